@@ -1,0 +1,370 @@
+"""Numba kernels of the rasteriser: fixed-point triangles against texel squares.
+
+Vertices are snapped to 2⁻¹⁴ of a texel and every edge test is exact in 64-bit integers, so two
+triangles that share an edge neither both claim nor both miss a sub-sample on it. Triangles come wound
+so that their area is not negative; ``swapped`` says which were turned round for that.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit, prange
+
+from irradia.bake.texels import SUBSAMPLES
+
+ONE = 1 << 14  # fixed-point steps per texel; pages of up to 2^16 texels keep edge products below 2^62
+NO_TRIANGLE = 0xFFFFFFFF
+_CLIP_CORNERS = 8  # a triangle cut by four lines has at most seven
+
+# Eight rooks that attack neither each other nor, nearly, along a diagonal: one sample in each of the
+# eight rows and columns of the texel.
+SUBSAMPLE_X = (np.arange(SUBSAMPLES) * 2 + 1) * ONE // (2 * SUBSAMPLES)
+SUBSAMPLE_Y = (np.array([3, 6, 0, 5, 7, 1, 4, 2]) * 2 + 1) * ONE // (2 * SUBSAMPLES)
+
+
+@njit(cache=True, inline="always")
+def _edge(ax, ay, bx, by, px, py):
+    """Twice the signed area of a, b, p."""
+    return (bx - ax) * (py - ay) - (by - ay) * (px - ax)
+
+
+@njit(cache=True)
+def _owns(ax, ay, bx, by, px, py):
+    """Whether p lies inside edge a→b; on it, one of the edge and its reverse owns it."""
+    value = _edge(ax, ay, bx, by, px, py)
+    if value != 0:
+        return value > 0
+    return by > ay or (by == ay and bx > ax)
+
+
+@njit(cache=True)
+def _contains(tri, px, py):
+    """Whether a sub-sample belongs to the triangle (3, 2)."""
+    return (
+        _owns(tri[0, 0], tri[0, 1], tri[1, 0], tri[1, 1], px, py)
+        and _owns(tri[1, 0], tri[1, 1], tri[2, 0], tri[2, 1], px, py)
+        and _owns(tri[2, 0], tri[2, 1], tri[0, 0], tri[0, 1], px, py)
+    )
+
+
+@njit(cache=True)
+def _area(tri):
+    return _edge(tri[0, 0], tri[0, 1], tri[1, 0], tri[1, 1], tri[2, 0], tri[2, 1])
+
+
+@njit(cache=True)
+def _edges_touch(tri, flat, x, y):
+    """Separating-axis test along the three edge normals for the square with its corner at x, y.
+
+    A triangle with area must overlap the open square; one without must meet the closed one.
+    """
+    for i in range(3):
+        j = (i + 1) % 3
+        dx = tri[j, 0] - tri[i, 0]
+        dy = tri[j, 1] - tri[i, 1]
+        corner = _edge(tri[i, 0], tri[i, 1], tri[j, 0], tri[j, 1], x, y)
+        most = corner + (max(dx, 0) + max(-dy, 0)) * ONE
+        if flat:
+            least = corner + (min(dx, 0) + min(-dy, 0)) * ONE
+            if most < 0 or least > 0:
+                return False
+        elif most <= 0:
+            return False
+    return True
+
+
+@njit(cache=True)
+def _texel_range(tri, axis, flat, size):
+    """First and one past the last texel that the triangle's extent along an axis touches."""
+    low = min(tri[0, axis], tri[1, axis], tri[2, axis])
+    high = max(tri[0, axis], tri[1, axis], tri[2, axis])
+    end = high // ONE + 1 if flat else (high + ONE - 1) // ONE
+    return max(min(low // ONE, size - 1), 0), min(end, size)
+
+
+@njit(cache=True)
+def _visit(tri, first_pixel, width, height, pixels, at):
+    """Writes the flat indices of the touched texels from ``at`` on if there is room; counts them."""
+    flat = _area(tri) == 0
+    x_begin, x_end = _texel_range(tri, 0, flat, width)
+    y_begin, y_end = _texel_range(tri, 1, flat, height)
+    count = 0
+    for y in range(y_begin, y_end):
+        for x in range(x_begin, x_end):
+            if _edges_touch(tri, flat, x * ONE, y * ONE):
+                if at + count < len(pixels):
+                    pixels[at + count] = first_pixel + y * width + x
+                count += 1
+    return count
+
+
+@njit(cache=True, parallel=True)
+def touched_texels(fixed, page, width, height, offsets, pixels):
+    """Lists the texels that each triangle touches.
+
+    Args:
+        fixed: (T, 3, 2) int64 vertices in steps of 1/ONE texel.
+        page: (T,) page of each triangle.
+        width, height: Size of a page in texels.
+        offsets: (T,) where each triangle's texels begin in ``pixels``.
+        pixels: (F,) int64, filled; empty to count only.
+
+    Returns:
+        (T,) how many texels each triangle touches.
+    """
+    counts = np.zeros(len(fixed), np.int64)
+    for t in prange(len(fixed)):
+        first = np.int64(page[t]) * height * width
+        counts[t] = _visit(fixed[t], first, width, height, pixels, offsets[t])
+    return counts
+
+
+@njit(cache=True)
+def group_by_texel(pixels, triangle_of, n_pixels):
+    """Counting sort of fragments by texel; within a texel triangles stay in ascending order.
+
+    Returns:
+        (covered pixels, offsets of their fragments (N + 1,), triangle of each fragment in that order).
+    """
+    slot = np.zeros(n_pixels + 1, np.int64)
+    for p in pixels:
+        slot[p + 1] += 1
+    n_covered = 0
+    for p in range(n_pixels):
+        n_covered += slot[p + 1] > 0
+        slot[p + 1] += slot[p]
+    covered = np.empty(n_covered, np.uint32)
+    offsets = np.empty(n_covered + 1, np.int64)
+    k = 0
+    for p in range(n_pixels):
+        if slot[p + 1] > slot[p]:
+            covered[k] = p
+            offsets[k] = slot[p]
+            k += 1
+    offsets[n_covered] = len(pixels)
+    ordered = np.empty(len(pixels), np.uint32)
+    for i in range(len(pixels)):
+        p = pixels[i]
+        ordered[slot[p]] = triangle_of[i]
+        slot[p] += 1
+    return covered, offsets, ordered
+
+
+@njit(cache=True)
+def _clip_axis(polygon, n, axis, sign, limit, out):
+    """Sutherland–Hodgman against sign · p[axis] ≤ limit; returns the number of corners kept."""
+    kept = 0
+    for i in range(n):
+        j = (i + 1) % n
+        a = sign * polygon[i, axis] - limit
+        b = sign * polygon[j, axis] - limit
+        if a <= 0:
+            out[kept] = polygon[i]
+            kept += 1
+        if (a < 0 < b) or (b < 0 < a):
+            share = a / (a - b)
+            out[kept, 1 - axis] = polygon[i, 1 - axis] + share * (polygon[j, 1 - axis] - polygon[i, 1 - axis])
+            out[kept, axis] = sign * limit
+            kept += 1
+    return kept
+
+
+@njit(cache=True)
+def _clip(tri, x, y, polygon, scratch):
+    """Cuts the triangle to the texel at x, y; corners in texel units about its centre."""
+    for i in range(3):
+        polygon[i, 0] = (tri[i, 0] - x) / ONE - 0.5
+        polygon[i, 1] = (tri[i, 1] - y) / ONE - 0.5
+    n = _clip_axis(polygon, 3, 0, -1.0, 0.5, scratch)
+    n = _clip_axis(scratch, n, 0, 1.0, 0.5, polygon)
+    n = _clip_axis(polygon, n, 1, -1.0, 0.5, scratch)
+    return _clip_axis(scratch, n, 1, 1.0, 0.5, polygon)
+
+
+@njit(cache=True)
+def _polygon_area(polygon, n):
+    total = 0.0
+    for i in range(n):
+        j = (i + 1) % n
+        total += polygon[i, 0] * polygon[j, 1] - polygon[j, 0] * polygon[i, 1]
+    return 0.5 * abs(total)
+
+
+@njit(cache=True)
+def _covers_square(tri, x, y):
+    for i in range(3):
+        j = (i + 1) % 3
+        dx = tri[j, 0] - tri[i, 0]
+        dy = tri[j, 1] - tri[i, 1]
+        if _edge(tri[i, 0], tri[i, 1], tri[j, 0], tri[j, 1], x, y) + (min(dx, 0) + min(-dy, 0)) * ONE < 0:
+            return False
+    return True
+
+
+@njit(cache=True)
+def _area_in_texel(tri, x, y, polygon, scratch):
+    """Share of the texel that the triangle covers, exact."""
+    if _area(tri) > 0 and _covers_square(tri, x, y):
+        return 1.0
+    return _polygon_area(polygon, _clip(tri, x, y, polygon, scratch))
+
+
+@njit(cache=True)
+def _nearest_to_origin(polygon, n):
+    """Point of a convex polygon that does not hold the origin which is nearest to it."""
+    best = np.inf
+    best_x, best_y = 0.0, 0.0
+    for i in range(n):
+        j = (i + 1) % n
+        ax, ay = polygon[i, 0], polygon[i, 1]
+        dx, dy = polygon[j, 0] - ax, polygon[j, 1] - ay
+        length2 = dx * dx + dy * dy
+        t = min(max(-(ax * dx + ay * dy) / length2, 0.0), 1.0) if length2 > 0 else 0.0
+        px, py = ax + t * dx, ay + t * dy
+        if px * px + py * py < best:
+            best = px * px + py * py
+            best_x, best_y = px, py
+    return best_x, best_y
+
+
+@njit(cache=True)
+def _weights(tri, px, py):
+    """Barycentric weights of the second and third corner at a point (fixed-point, may be fractional)."""
+    area = float(_area(tri))
+    if area > 0:
+        second = _edge(float(tri[2, 0]), float(tri[2, 1]), float(tri[0, 0]), float(tri[0, 1]), px, py) / area
+        third = _edge(float(tri[0, 0]), float(tri[0, 1]), float(tri[1, 0]), float(tri[1, 1]), px, py) / area
+        second = min(max(second, 0.0), 1.0)
+        return second, min(max(third, 0.0), 1.0 - second)
+    return _weights_on_line(tri, px, py)
+
+
+@njit(cache=True)
+def _weights_on_line(tri, px, py):
+    """The same for a triangle without area: the position along its longest edge."""
+    best, i = 0.0, 0
+    for e in range(3):
+        dx, dy = tri[(e + 1) % 3, 0] - tri[e, 0], tri[(e + 1) % 3, 1] - tri[e, 1]
+        if float(dx * dx + dy * dy) > best:
+            best, i = float(dx * dx + dy * dy), e
+    if best == 0.0:
+        return 1.0 / 3.0, 1.0 / 3.0
+    j = (i + 1) % 3
+    along = (px - tri[i, 0]) * (tri[j, 0] - tri[i, 0]) + (py - tri[i, 1]) * (tri[j, 1] - tri[i, 1])
+    t = min(max(along / best, 0.0), 1.0)
+    second = (1.0 - t if i == 1 else 0.0) + (t if j == 1 else 0.0)
+    third = (1.0 - t if i == 2 else 0.0) + (t if j == 2 else 0.0)
+    return second, third
+
+
+@njit(cache=True)
+def _chart_share(fixed, chart, fragments, wanted, x, y, polygon, scratch):
+    """How many sub-samples a chart has in a texel, and how much of its area."""
+    hits = 0
+    for s in range(SUBSAMPLES):
+        for t in fragments:
+            if chart[t] == wanted and _contains(fixed[t], x + SUBSAMPLE_X[s], y + SUBSAMPLE_Y[s]):
+                hits += 1
+                break
+    area = 0.0
+    for t in fragments:
+        if chart[t] == wanted:
+            area += _area_in_texel(fixed[t], x, y, polygon, scratch)
+    return hits, area
+
+
+@njit(cache=True)
+def _owner(fixed, chart, fragments, x, y, polygon, scratch):
+    """The chart with most sub-samples, then most area, then the lowest triangle."""
+    owner = chart[fragments[0]]
+    hits, area = _chart_share(fixed, chart, fragments, owner, x, y, polygon, scratch)
+    for i in range(1, len(fragments)):
+        rival = chart[fragments[i]]
+        if rival == owner or rival == chart[fragments[i - 1]]:
+            continue
+        rival_hits, rival_area = _chart_share(fixed, chart, fragments, rival, x, y, polygon, scratch)
+        if rival_hits > hits or (rival_hits == hits and rival_area > area):
+            owner, hits, area = rival, rival_hits, rival_area
+    return owner, area
+
+
+@njit(cache=True)
+def _store(fixed, swapped, t, px, py, triangle, barycentric):
+    """Records one sub-sample in the triangle's own order of corners."""
+    second, third = _weights(fixed[t], px, py)
+    triangle[0] = t
+    barycentric[0] = third if swapped[t] else second
+    barycentric[1] = second if swapped[t] else third
+
+
+@njit(cache=True)
+def _sample_sliver(fixed, swapped, chart, fragments, owner, x, y, polygon, scratch, triangle, barycentric):
+    """One sample at the point nearest to the texel's centre, for a texel that no sub-sample hits."""
+    best = np.inf
+    for t in fragments:
+        if chart[t] != owner:
+            continue
+        n = _clip(fixed[t], x, y, polygon, scratch)
+        px, py = _nearest_to_origin(polygon, n)
+        if px * px + py * py < best:
+            best = px * px + py * py
+            _store(fixed, swapped, t, x + (px + 0.5) * ONE, y + (py + 0.5) * ONE, triangle, barycentric)
+
+
+@njit(cache=True, parallel=True)
+def resolve(fixed, swapped, chart, pixels, offsets, fragments, width, height):
+    """Decides for each covered texel which chart owns it and what its sub-samples see.
+
+    Args:
+        fixed: (T, 3, 2) int64 vertices in steps of 1/ONE texel.
+        swapped: (T,) whether the second and third vertex change places in ``fixed``.
+        chart: (T,).
+        pixels: (N,) the covered texels.
+        offsets: (N + 1,) where each texel's triangles begin in ``fragments``.
+        fragments: Triangles by texel, ascending within each; see :func:`group_by_texel`.
+        width, height: Size of a page in texels.
+
+    Returns:
+        triangle (N, SUBSAMPLES) uint32, barycentric (N, SUBSAMPLES, 2) float32, coverage (N,)
+        float32, chart (N,) uint32.
+    """
+    n = len(pixels)
+    triangle = np.full((n, SUBSAMPLES), NO_TRIANGLE, np.uint32)
+    barycentric = np.zeros((n, SUBSAMPLES, 2), np.float32)
+    coverage = np.empty(n, np.float32)
+    chart_of = np.empty(n, np.uint32)
+    for k in prange(n):
+        polygon = np.empty((_CLIP_CORNERS, 2))
+        scratch = np.empty((_CLIP_CORNERS, 2))
+        in_page = np.int64(pixels[k]) % (width * height)
+        x = (in_page % width) * ONE
+        y = (in_page // width) * ONE
+        here = fragments[offsets[k] : offsets[k + 1]]
+
+        # -- Who owns the texel
+        owner, area = _owner(fixed, chart, here, x, y, polygon, scratch)
+        chart_of[k] = owner
+        coverage[k] = min(max(area, 1e-6), 1.0)
+
+        # -- What each sub-sample sees: the lowest triangle of that chart
+        n_hits = 0
+        for s in range(SUBSAMPLES):
+            px, py = x + SUBSAMPLE_X[s], y + SUBSAMPLE_Y[s]
+            for t in here:
+                if chart[t] == owner and _contains(fixed[t], px, py):
+                    _store(
+                        fixed, swapped, t, float(px), float(py), triangle[k, n_hits:], barycentric[k, n_hits]
+                    )
+                    n_hits += 1
+                    break
+        if n_hits == 0:
+            _sample_sliver(
+                fixed, swapped, chart, here, owner, x, y, polygon, scratch, triangle[k], barycentric[k, 0]
+            )
+            n_hits = 1
+
+        # -- A texel covered in part repeats what it has
+        for s in range(n_hits, SUBSAMPLES):
+            triangle[k, s] = triangle[k, s - n_hits]
+            barycentric[k, s] = barycentric[k, s - n_hits]
+    return triangle, barycentric, coverage, chart_of
