@@ -1,0 +1,58 @@
+"""Closed rooms are closed, and the Cornell box has its published measures."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+
+def edge_counts(part) -> Counter:
+    """How many triangles share each edge, vertices welded by position."""
+    _, welded = np.unique(np.round(part.positions, 6), axis=0, return_inverse=True)
+    triangles = welded.reshape(-1)[part.indices]
+    return Counter(tuple(sorted(pair)) for k in range(3) for pair in triangles[:, [k, (k + 1) % 3]].tolist())
+
+
+def signed_volume(part) -> float:
+    a, b, c = (part.positions[part.indices[:, k]] for k in range(3))
+    return float(np.einsum("tc,tc->", a, np.cross(b, c))) / 6
+
+
+@pytest.mark.parametrize("name", ["furnace", "furnace-80", "closed"])
+def test_room_is_closed_and_faces_inward(name, parts):
+    room = next(p for p in parts(name) if p.node == "room")
+    assert set(edge_counts(room).values()) == {2}
+    assert signed_volume(room) == pytest.approx(-60.0, rel=1e-5)
+
+
+@pytest.mark.parametrize(("name", "reflectance"), [("furnace", 0.5), ("furnace-80", 0.8)])
+def test_furnace_is_purely_diffuse_and_emits_one(name, reflectance, document):
+    (material,) = document(name).json["materials"]
+    assert material["pbrMetallicRoughness"]["baseColorFactor"] == [reflectance] * 3 + [1.0]
+    assert material["pbrMetallicRoughness"]["metallicFactor"] == 0.0
+    assert material["extensions"]["KHR_materials_specular"]["specularFactor"] == 0.0
+    assert material["emissiveFactor"] == [1.0, 1.0, 1.0]
+
+
+def test_cornell_box_has_the_published_triangles_and_size(parts):
+    assert sum(len(p.indices) for p in parts("cornell")) == 2 * (2 + 4 + 2 + 5 + 5 + 1)
+    points = np.concatenate([p.positions for p in parts("cornell")])
+    np.testing.assert_allclose(points.min(axis=0), (0, 0, 0), atol=1e-6)
+    np.testing.assert_allclose(points.max(axis=0), (0.556, 0.5488, 0.5592), atol=1e-6)
+
+
+@pytest.mark.parametrize("node", ["room", "green wall", "red wall", "lamp"])
+def test_cornell_walls_face_the_middle_of_the_room(node, parts):
+    for part in parts("cornell"):
+        if part.node == node:
+            toward_middle = np.array([0.278, 0.274, 0.28]) - part.positions
+            assert np.einsum("vc,vc->v", part.normals, toward_middle).min() > 0
+
+
+@pytest.mark.parametrize("node", ["short block", "tall block"])
+def test_cornell_blocks_face_outward(node, parts):
+    (block,) = (p for p in parts("cornell") if p.node == node)
+    centre = block.positions.mean(axis=0)
+    assert np.einsum("vc,vc->v", block.normals, block.positions - centre).min() > 0
