@@ -105,7 +105,8 @@ def touched_texels(fixed, page, width, height, offsets, pixels):
     Args:
         fixed: (T, 3, 2) int64 vertices in steps of 1/ONE texel.
         page: (T,) page of each triangle.
-        width, height: Size of a page in texels.
+        width: Of a page, in texels.
+        height: The same.
         offsets: (T,) where each triangle's texels begin in ``pixels``.
         pixels: (F,) int64, filled; empty to count only.
 
@@ -322,7 +323,8 @@ def resolve(fixed, swapped, chart, pixels, offsets, fragments, width, height):
         pixels: (N,) the covered texels.
         offsets: (N + 1,) where each texel's triangles begin in ``fragments``.
         fragments: Triangles by texel, ascending within each; see :func:`group_by_texel`.
-        width, height: Size of a page in texels.
+        width: Of a page, in texels.
+        height: The same.
 
     Returns:
         triangle (N, SUBSAMPLES) uint32, barycentric (N, SUBSAMPLES, 2) float32, coverage (N,)
