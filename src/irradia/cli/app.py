@@ -1,0 +1,100 @@
+"""The group ``irradia``: commands are imported when they run, so that ``--help`` stays instant."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+import traceback
+from collections.abc import Sequence
+from typing import NoReturn
+
+import click
+
+from irradia import __version__
+from irradia.cli.output import reserve_stdout, write_json
+from irradia.core.errors import InputError, IrradiaError
+
+INTERRUPTED = 130  # what shells report for a program ended by Ctrl-C
+
+# Name: module below irradia.cli, one line for the list. The module holds ``command``.
+COMMANDS: dict[str, tuple[str, str]] = {
+    "doctor": ("doctor", "What this machine can run, and how to mend what it can't."),
+    "demo": ("demo", "Bake a scene of our own, with report."),
+    "info": ("info", "What is in a scene and what the bake will do with it."),
+    "bake": ("bake", "Bake a scene's lightmaps, with baked .glb and report."),
+    "render": ("render", "Path-trace an image of a scene or of a baked result."),
+    "compare": ("compare", "Metrics between two images or lightmaps."),
+}
+
+
+class LazyGroup(click.Group):
+    """A group whose commands are modules, imported on first use."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """The commands in the order in which one meets them."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Imports the module of one command."""
+        if cmd_name not in COMMANDS:
+            return None
+        return importlib.import_module(f"irradia.cli.{COMMANDS[cmd_name][0]}").command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Lists the commands without importing any."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, line) for name, (_, line) in COMMANDS.items()])
+
+
+@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="irradia")
+def group() -> None:
+    """Bakes the light of a glTF scene, and proves it right."""
+
+
+def main() -> NoReturn:
+    """The entry point of the program."""
+    sys.exit(run(sys.argv[1:]))
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Runs one command line and returns its exit code: 0 done, 2 bad input, 1 our fault.
+
+    With ``--json`` exactly one JSON object reaches stdout, on failure too; whatever libraries
+    print goes to stderr.
+    """
+    if "--json" not in arguments:
+        return _run(arguments, wants_json=False)
+    with reserve_stdout():
+        return _run(arguments, wants_json=True)
+
+
+def _run(arguments: Sequence[str], *, wants_json: bool) -> int:
+    try:
+        code = group.main(list(arguments), prog_name="irradia", standalone_mode=False)
+    except click.Abort:
+        return _fail(wants_json, "stopped; files already finished are whole, run again to go on", INTERRUPTED)
+    except click.ClickException as error:
+        return _fail(wants_json, _usage(error), error.exit_code)
+    except IrradiaError as error:
+        return _fail(wants_json, str(error), error.exit_code, getattr(error, "where", None))
+    except MemoryError:
+        return _fail(wants_json, "not enough memory; a smaller --resolution needs less", InputError.exit_code)
+    except Exception as error:  # noqa: BLE001 - the last line of defence: report it as our fault
+        traceback.print_exc(file=sys.stderr)
+        return _fail(wants_json, f"a defect of Irradia, please report it: {error!r}", 1)
+    return code if isinstance(code, int) else 0
+
+
+def _usage(error: click.ClickException) -> str:
+    """A usage error's message with a way to the help."""
+    context = getattr(error, "ctx", None)
+    path = context.command_path if context else "irradia"
+    return f"{error.format_message()}\n  See: {path} --help"
+
+
+def _fail(wants_json: bool, message: str, code: int, where: str | None = None) -> int:
+    click.echo(f"irradia: {message}", err=True)
+    if wants_json:
+        write_json({"ok": False, "error": {"message": message, "where": where, "exit_code": code}})
+    return code

@@ -1,0 +1,68 @@
+"""What a command says: text or one JSON object on stdout, progress on stderr."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, redirect_stdout
+from typing import IO, Any
+
+import click
+
+_reserved: list[IO[bytes]] = []
+
+
+@contextmanager
+def reserve_stdout() -> Iterator[None]:
+    """Keeps stdout for :func:`write_json`: until the block ends, what others print goes to stderr.
+
+    The file descriptor is moved as well as ``sys.stdout``, since C++ libraries print past the latter.
+    """
+    sys.stdout.flush()
+    with os.fdopen(os.dup(1), "wb") as kept, redirect_stdout(sys.stderr):
+        os.dup2(2, 1)
+        _reserved.append(kept)
+        try:
+            yield
+        finally:
+            kept.flush()
+            _reserved.pop()
+            os.dup2(kept.fileno(), 1)
+
+
+def write_json(value: Mapping[str, Any]) -> None:
+    """Writes the command's one JSON object. NaN and infinity, which JSON lacks, become null."""
+    text = json.dumps(_finite(value), indent=2, allow_nan=False, default=_plain) + "\n"
+    if _reserved:
+        _reserved[-1].write(text.encode("utf-8"))
+    else:
+        click.echo(text, nl=False)
+
+
+def finish(as_json: bool, result: Mapping[str, Any], text: str) -> None:
+    """Ends a command: the result as JSON, or the text for people."""
+    if as_json:
+        write_json({"ok": True, **result})
+    else:
+        click.echo(text)
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, float):
+        return value if value == value and abs(value) != float("inf") else None
+    if isinstance(value, Mapping):
+        return {str(k): _finite(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(v) for v in value]
+    return value
+
+
+def _plain(value: Any) -> Any:
+    """NumPy scalars and arrays, paths."""
+    if hasattr(value, "tolist"):
+        return _finite(value.tolist())
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    raise TypeError(f"{type(value).__name__} has no JSON form")
