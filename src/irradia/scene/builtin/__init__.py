@@ -34,6 +34,14 @@ _SCENES: dict[str, tuple[str, tuple]] = {
     "closed": ("closed", ()),
     "plane-point": ("plane_point", ()),
     "rectangle": ("rectangle", ()),
+    "pane": ("pane", ()),
+    "cylinder": ("cylinder", ()),
+    "leaks": ("leaks", ()),
+    "blocks": ("blocks", ()),
+    "foliage": ("foliage", ()),
+    "lights": ("lights", ()),
+    "objects": ("objects", ("objects", False)),
+    "objects-merged": ("objects", ("objects-merged", True)),
 }
 
 NAMES: tuple[str, ...] = tuple(_SCENES)

@@ -15,7 +15,7 @@ import numpy as np
 from irradia.scene.builtin.builder import SceneBuilder
 from irradia.scene.builtin.matte import matte
 from irradia.scene.builtin.mesh import Mesh, join, look_at
-from irradia.scene.builtin.shapes import face
+from irradia.scene.builtin.shapes import face, frame
 from irradia.scene.gltf.document import GltfDocument
 from irradia.scene.types import Camera, Material
 
@@ -39,7 +39,9 @@ def build() -> GltfDocument:
     """The box with both blocks, open toward the camera, without an environment."""
     scene = SceneBuilder("cornell")
     white = scene.material(matte("white", WHITE))
-    room = join(_face(_FLOOR), _face(_BACK_WALL), _ceiling_around_lamp())
+    # The lamp fills a hole in the ceiling: no coincident faces.
+    ceiling = frame(np.array(_CEILING) / 1000, np.array(_LAMP) / 1000)
+    room = join(_face(_FLOOR), _face(_BACK_WALL), ceiling)
     scene.object("room", (room, white))
     scene.object("green wall", (_face(_GREEN_WALL), scene.material(matte("green", GREEN))))
     scene.object("red wall", (_face(_RED_WALL), scene.material(matte("red", RED))))
@@ -64,12 +66,6 @@ def build() -> GltfDocument:
 
 def _face(corners_mm: list) -> Mesh:
     return face(np.array(corners_mm, np.float64) / 1000)
-
-
-def _ceiling_around_lamp() -> Mesh:
-    """Four trapezoids that leave the lamp's rectangle open: no coincident faces, no T-junctions."""
-    sides = [[_CEILING[k], _CEILING[(k + 1) % 4], _LAMP[(k + 1) % 4], _LAMP[k]] for k in range(4)]
-    return join(*(_face(side) for side in sides))
 
 
 def _block(footprint_mm: list, height_mm: float) -> Mesh:

@@ -13,7 +13,7 @@ from irradia.scene.types import Camera
 def build(name: str, reflectance: float) -> GltfDocument:
     """A box of 4 × 3 × 5 m, fronts inward."""
     scene = SceneBuilder(name)
-    wall = matte("wall", (reflectance,) * 3, emission=(1.0, 1.0, 1.0))
+    wall = matte("wall", (reflectance, reflectance, reflectance), emission=(1.0, 1.0, 1.0))
     scene.object("room", (centred_box((4, 3, 5)).inside_out(), scene.material(wall)))
     scene.camera(Camera(look_at((0, 0, 2), (0, 0, 0)), yfov_rad=1.0, name="camera"))
     scene.environment_color((0.0, 0.0, 0.0))

@@ -36,6 +36,13 @@ def face(corners: ArrayLike) -> Mesh:
     )
 
 
+def frame(outer: ArrayLike, inner: ArrayLike) -> Mesh:
+    """A flat ring between two polygons of N corners each: N trapezoids that meet without T-junctions."""
+    outer, inner = np.asarray(outer, np.float64), np.asarray(inner, np.float64)
+    following = np.roll(np.arange(len(outer)), -1)
+    return join(*(face([outer[k], outer[n], inner[n], inner[k]]) for k, n in enumerate(following)))
+
+
 def floor(size_x: float, size_z: float, y: float = 0.0, n_x: int = 1, n_z: int = 1) -> Mesh:
     """A horizontal rectangle around the Y axis, front up."""
     return quad((-size_x / 2, y, size_z / 2), (size_x, 0, 0), (0, 0, -size_z), n_x, n_z)
