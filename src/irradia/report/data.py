@@ -1,0 +1,118 @@
+"""What a report is made from: arrays and plain values, whoever made them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+F32 = NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One camera's view of the bake beside the path-traced references.
+
+    Attributes:
+        name: The camera's name.
+        baked, reference: (H, W, 3) linear radiance, diffuse transport both.
+        full: The same view with full materials, shown unscored; None where it wasn't rendered.
+        flip: (H, W) HDR-FLIP error in [0, 1].
+        scores: Metric by name, as :mod:`irradia.metrics` gives them.
+        reference_spp, full_spp: Samples per pixel of the references.
+    """
+
+    name: str
+    baked: F32
+    reference: F32
+    full: F32 | None
+    flip: F32
+    scores: Mapping[str, float]
+    reference_spp: int
+    full_spp: int = 0
+
+
+@dataclass(frozen=True)
+class LightmapSummary:
+    """The finished pages.
+
+    Attributes:
+        pages: (P, H, W, 3) E/π, dilated.
+        coverage: (P, H, W) share of each texel that charts cover.
+        texels_per_metre: Median density.
+        n_invalid: Texels that lie inside geometry.
+    """
+
+    pages: F32
+    coverage: F32
+    texels_per_metre: float
+    n_invalid: int = 0
+
+    @property
+    def n_texels(self) -> int:
+        """Covered texels."""
+        return int(np.count_nonzero(self.coverage))
+
+    @property
+    def utilisation(self) -> float:
+        """Covered texels over all texels."""
+        return self.n_texels / max(self.coverage.size, 1)
+
+
+@dataclass(frozen=True)
+class Performance:
+    """What the bake cost.
+
+    Attributes:
+        stage_s: Wall seconds by stage, in order.
+        samples_per_second: Gather rays with their share of next-event rays, over all epochs.
+        rays_per_second: Rays of either kind; None where they weren't counted.
+        peak_memory_bytes: Highest resident size of the process; None where the system doesn't tell.
+        counts: Anything else that was counted, by label (epochs, launches per pass …).
+    """
+
+    stage_s: Mapping[str, float]
+    samples_per_second: float
+    rays_per_second: float | None = None
+    peak_memory_bytes: int | None = None
+    counts: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """How the estimate's mean nears the reference's as samples are added.
+
+    Attributes:
+        samples: (N,) samples per texel.
+        mean_ratio: (N,) mean of the bake over mean of ``against``.
+        against: What the ratio is taken to.
+    """
+
+    samples: tuple[int, ...]
+    mean_ratio: tuple[float, ...]
+    against: str = "final mean"
+
+
+@dataclass(frozen=True)
+class ReportData:
+    """Everything in one report.
+
+    Attributes:
+        title: The scene's name.
+        facts: Label and value of what was in the scene, in reading order.
+        comparisons: Views; may be empty.
+        notes: What the user should know: defaults taken, things unsupported.
+        provenance: :meth:`irradia.core.provenance.Provenance.to_dict`.
+    """
+
+    title: str
+    facts: tuple[tuple[str, str], ...]
+    comparisons: tuple[Comparison, ...]
+    lightmap: LightmapSummary
+    performance: Performance
+    provenance: Mapping[str, Any]
+    convergence: Convergence | None = None
+    notes: tuple[str, ...] = ()
