@@ -103,7 +103,7 @@ class Accessors:
         accessor = self._root.element("accessors", index)
         dtype, shape = _layout(accessor)
         count = accessor.integer("count", minimum=1)
-        view_index = accessor.index("bufferView", len(self._root.items("bufferViews")))
+        view_index = accessor.index("bufferView", self._root.length("bufferViews"))
         if view_index is None:
             values = _zeros(accessor, count, dtype, shape)
         else:
@@ -144,7 +144,7 @@ class Accessors:
     ) -> NDArray:
         """A copy of ``dense`` with some elements replaced."""
         count = sparse.integer("count", minimum=1)
-        n_views = len(self._root.items("bufferViews"))
+        n_views = self._root.length("bufferViews")
         where, what = sparse.object("indices"), sparse.object("values")
         index_dtype = _component_type(where)
         indices_view, values_view = where.index("bufferView", n_views), what.index("bufferView", n_views)

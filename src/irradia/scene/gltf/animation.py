@@ -34,7 +34,7 @@ def sample_animations(
         for channel in animation.items("channels"):
             target = channel.object("target")
             path = target.string("path")
-            node = target.index("node", len(root.items("nodes")))
+            node = target.index("node", root.length("nodes"))
             if path not in _PATHS or node is None:
                 notes.add(f"animation of '{path}' is not read")
                 continue

@@ -44,7 +44,7 @@ def fit_texcoords(material: Material, n_sets: int) -> FittedMaterial:
             dropped.append((name, ref.texcoord))
         elif slot[ref.texcoord] != ref.texcoord:
             changed[name] = replace(ref, texcoord=slot[ref.texcoord])
-    fitted = replace(material, **changed) if changed else material  # pyright: ignore[reportArgumentType]
+    fitted = replace(material, **changed) if changed else material
     return FittedMaterial(fitted, order, tuple(dropped))
 
 

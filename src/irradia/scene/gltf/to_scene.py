@@ -106,11 +106,11 @@ class _Geometry:
 
     def add(self, node: PlacedNode) -> None:
         """Adds the mesh of ``node``, if it has one."""
-        mesh_index = node.view.index("mesh", len(self._root.items("meshes")))
+        mesh_index = node.view.index("mesh", self._root.length("meshes"))
         if mesh_index is None:
             return
         mesh = self._root.element("meshes", mesh_index)
-        skin_index = node.view.index("skin", len(self._root.items("skins")))
+        skin_index = node.view.index("skin", self._root.length("skins"))
         weights = node.weights or _weights(node.view) or _weights(mesh)
         placements = self._placements(node, skin_index)
         for primitive_index, view in enumerate(mesh.items("primitives")):

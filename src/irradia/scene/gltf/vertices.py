@@ -82,7 +82,7 @@ def _blend(stored: StoredPrimitive, name: str, weights: tuple[float, ...]) -> F3
     values = stored.attributes[name].floats(*components)
     for weight, target in zip(weights, stored.targets, strict=True):
         if weight and name in target:
-            values = values + np.float32(weight) * target[name].floats(values.shape[1])
+            values += np.float32(weight) * target[name].floats(values.shape[1])
     return values
 
 

@@ -36,15 +36,17 @@ class JsonView:
 
     def items(self, key: str) -> list[JsonView]:
         """The elements of the array under ``key``; none where it is absent."""
-        child = self._child(key, [])
-        if not isinstance(child.value, list):
-            raise self._wrong(child, "an array")
-        return [JsonView(value, f"{child.pointer}/{index}") for index, value in enumerate(child.value)]
+        array = self._array(key)
+        return [JsonView(value, f"{array.pointer}/{index}") for index, value in enumerate(array.value)]
 
     def entries(self) -> Iterator[tuple[str, JsonView]]:
         """The members of this object."""
         for key in self._object():
             yield key, self._child(key, None)
+
+    def length(self, key: str) -> int:
+        """How many elements the array under ``key`` has; 0 where it is absent."""
+        return len(self._array(key).value)
 
     def element(self, key: str, index: int) -> JsonView:
         """Element ``index`` of the array under ``key``.
@@ -52,10 +54,12 @@ class JsonView:
         Raises:
             InputError: There is no such element.
         """
-        elements = self.items(key)
-        if not 0 <= index < len(elements):
-            raise InputError(f"expected an index below {len(elements)}, found {index}", where=f"/{key}")
-        return elements[index]
+        array = self._array(key)
+        if not 0 <= index < len(array.value):
+            raise InputError(
+                f"expected an index below {len(array.value)}, found {index}", where=array.pointer
+            )
+        return JsonView(array.value[index], f"{array.pointer}/{index}")
 
     def number(self, key: str, default: float, *, minimum: float = -math.inf) -> float:
         """A finite number of at least ``minimum``."""
@@ -134,6 +138,12 @@ class JsonView:
         if not isinstance(self.value, dict):
             raise self._wrong(self, "an object")
         return self.value
+
+    def _array(self, key: str) -> JsonView:
+        child = self._child(key, [])
+        if not isinstance(child.value, list):
+            raise self._wrong(child, "an array")
+        return child
 
     def _child(self, key: str, default: Any) -> JsonView:
         escaped = key.replace("~", "~0").replace("/", "~1")
