@@ -20,7 +20,8 @@ class MergedMesh:
         texcoords: (V, 2, 2): the vertex, the set (0 or 1), u and v.
         colors: (V, 4) linear, ones where the file has none.
         lightmap_uv: (V, 2) page uv in [0, 1], origin top left; 0 where there is none.
-        indices: (T, 3); wound so that the geometric normal is the front's, also under mirroring.
+        indices: (T, 3); wound so that the geometric normal is the front's, also under mirroring,
+            and starting at the corner of smallest position, so that coincident triangles compare.
         material, instance: (T,) what each triangle belongs to.
         page: (T,) lightmap page, or −1.
         chart: (T,) chart number, unique over the whole layout, or 0xFFFFFFFF.
@@ -49,10 +50,13 @@ def merge(scene: Scene, layout: LightmapLayout | None = None) -> MergedMesh:
         texcoords=_join([p.texcoords for p in parts], (0, 2, 2), np.float32),
         colors=_join([p.colors for p in parts], (0, 4), np.float32),
         lightmap_uv=_join([p.lightmap_uv for p in parts], (0, 2), np.float32),
-        indices=_join(
-            [p.indices + np.uint32(f) for p, f in zip(parts, first_vertex, strict=False)],
-            (0, 3),
-            np.uint32,
+        indices=_start_at_smallest_corner(
+            _join([p.positions for p in parts], (0, 3), np.float32),
+            _join(
+                [p.indices + np.uint32(f) for p, f in zip(parts, first_vertex, strict=False)],
+                (0, 3),
+                np.uint32,
+            ),
         ),
         material=_join([p.material for p in parts], (0,), np.uint32),
         instance=_join([p.instance for p in parts], (0,), np.uint32),
@@ -117,3 +121,19 @@ def _normal_transform(linear: NDArray[np.float64]) -> NDArray[np.float64]:
     a, b, c = linear
     cofactor = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)])
     return cofactor * (1.0 if np.linalg.det(linear) >= 0 else -1.0)
+
+
+def _start_at_smallest_corner(positions: F32, indices: U32) -> U32:
+    """Rotates each triangle, keeping its winding."""
+    corners = positions[indices].astype(np.float64)
+    smallest = np.zeros(len(indices), np.intp)
+    for candidate in (1, 2):
+        a = corners[:, candidate]
+        b = corners[np.arange(len(indices)), smallest]
+        less = a < b
+        first = less[:, 0]
+        second = (a[:, 0] == b[:, 0]) & less[:, 1]
+        third = (a[:, 0] == b[:, 0]) & (a[:, 1] == b[:, 1]) & less[:, 2]
+        smallest = np.where(first | second | third, candidate, smallest)
+    order = (smallest[:, None] + np.arange(3)) % 3
+    return np.take_along_axis(indices, order, axis=1)

@@ -1,0 +1,158 @@
+"""The cached gather in epochs.
+
+A gather ray that meets a surface reads the light leaving it from the map of the previous epoch;
+each epoch starts its own sums from nothing. Short epochs carry the light around until the map's
+mean has settled, a few longer ones replace their noise, and the last, whose cache is frozen, is
+the result: its samples are independent. A running mean that read itself would converge like
+n^−(1−ρ) and never get there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irradia.core import Progress, Seed
+
+if TYPE_CHECKING:
+    from irradia.transport.path import LightCache
+    from irradia.transport.texel_light import TexelLight, TexelSums
+
+RAYS_PER_PASS = 8
+_MAX_SETTLING = 64
+_SETTLED = 5e-4  # of the mean: what the epochs still to come may add
+
+
+@dataclass(frozen=True)
+class Epoch:
+    """One epoch as it went: rays per texel and the map's mean after it."""
+
+    rays: int
+    mean: float
+
+
+@dataclass(frozen=True)
+class EpochPlan:
+    """Rays per texel of the epochs after the map has settled; the last makes the result.
+
+    Attributes:
+        cached: Whether there is a cache at all; a path-traced bake is one epoch without.
+    """
+
+    sizes: tuple[int, ...]
+    cached: bool
+
+    @staticmethod
+    def for_options(samples: int, *, cached: bool) -> EpochPlan:
+        """Doubling epochs up to an eighth of ``samples``, then ``samples``."""
+        growing = []
+        size = 2
+        while cached and size <= samples // 8:
+            growing.append(size)
+            size *= 2
+        return EpochPlan((*growing, samples), cached)
+
+
+def run_epochs(
+    light: TexelLight, plan: EpochPlan, n_direct: int, seed: Seed, progress: Progress
+) -> tuple[NDArray[np.float32], NDArray[np.float32], list[Epoch], int]:
+    """Traces a whole bake.
+
+    Returns:
+        E/π (N, 3), back-face share (N,), the epochs, and kernel launches per pass.
+    """
+    from irradia.transport.texel_light import count_launches
+
+    reflectance = light.reflectance() if plan.cached else None
+    with progress.stage("direct light", light.n_texels * n_direct, "samples") as stage:
+        direct = light.empty_sums()
+        while direct.count < n_direct:
+            n = min(RAYS_PER_PASS, n_direct - direct.count)
+            direct = light.direct(direct, n, seed.child("direct").uint32())
+            light.wait()
+            stage.advance(n * light.n_texels)
+
+    epochs: list[Epoch] = []
+    cache: LightCache | None = None
+    if plan.cached:
+        with progress.stage("light bounces") as stage:
+            cache = _settle(light, direct.mean, reflectance, seed.child("settle"), epochs, stage)
+
+    launches = 0
+    sums = light.empty_sums()
+    total = light.n_texels * sum(plan.sizes)
+    with progress.stage("gather", total, "samples") as stage:
+        for number, size in enumerate(plan.sizes):
+            stream = seed.child(f"epoch-{number}").uint32()
+            sums = light.empty_sums()
+            while sums.count < size:
+                n = min(RAYS_PER_PASS, size - sums.count)
+                subsample = number + sums.count // RAYS_PER_PASS
+                step = _Pass(light, sums, n, stream, cache, subsample)
+                launches = count_launches(step.run)
+                sums = step.result
+                stage.advance(n * light.n_texels)
+            estimate = sums.mean + direct.mean
+            epochs.append(Epoch(size, light.mean(estimate)))
+            if plan.cached and number + 1 < len(plan.sizes):
+                cache = light.cache(estimate, reflectance)
+    host = light.to_host(sums.mean + direct.mean)
+    back_share = light.to_host(sums.backs) / max(sums.count, 1)
+    return host, back_share.astype(np.float32), epochs, launches
+
+
+@dataclass
+class _Pass:
+    """One gather pass as a callable, so that its kernel launches can be counted."""
+
+    light: TexelLight
+    sums: TexelSums
+    n_rays: int
+    seed: int
+    cache: LightCache | None
+    subsample: int
+
+    def run(self) -> None:
+        self.result = self.light.gather(
+            self.sums, self.n_rays, self.seed, self.cache, subsample=self.subsample
+        )
+
+
+def _settle(light: TexelLight, direct, reflectance, seed: Seed, epochs: list[Epoch], stage) -> LightCache:
+    """Epochs of one ray a texel until what is still to come is below ``_SETTLED`` of the mean.
+
+    All draw the same random numbers, so that the iteration is a fixed linear one whose mean
+    converges geometrically; the later epochs draw fresh ones. Every third epoch jumps ahead by
+    the geometric series' remainder.
+    """
+    stream = seed.uint32()
+    cache = light.cache(direct, reflectance)
+    means: list[float] = [light.mean(direct)]
+    for _ in range(_MAX_SETTLING):
+        sums = light.gather(light.empty_sums(), 1, stream, cache, subsample=0)
+        estimate = sums.mean + direct
+        means.append(light.mean(estimate))
+        epochs.append(Epoch(1, means[-1]))
+        stage.note(f"{len(epochs)} epochs")
+        scale = 1.0
+        if len(means) >= 3:
+            remainder = _geometric_remainder(means)
+            if abs(remainder) <= _SETTLED * abs(means[-1]):
+                return light.cache(estimate, reflectance)
+            if len(means) >= 4:
+                scale = 1.0 + remainder / means[-1]
+                means = [means[-1] * scale]
+        cache = light.cache(estimate, reflectance, scale)
+    return cache
+
+
+def _geometric_remainder(means: list[float]) -> float:
+    """What a geometric series that goes on like the last three means would still add."""
+    before, last = means[-2] - means[-3], means[-1] - means[-2]
+    if before == 0.0 or last == 0.0:
+        return 0.0
+    ratio = min(max(last / before, 0.0), 0.98)
+    return last * ratio / (1.0 - ratio)

@@ -1,0 +1,222 @@
+"""The integrator: radiance along rays through a diffuse world.
+
+With no cache this is an unbiased path tracer (Kajiya 1986) with next-event estimation, multiple
+importance sampling by the balance heuristic (Veach 1995) and Russian roulette. With a cache, a ray
+that stops on a mapped surface takes its radiance from there and ends; it goes on as a path only
+from surfaces without texels. Each source of light is counted once:
+
+    punctual lights           by next-event estimation alone: rays can't meet them
+    emission, environment     by both, weighted n·p / (n·p + n'·p')
+    sources that next-event   by rays alone, weight 1: their density is 0
+    estimation doesn't sample
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+from irradia.transport.backend import dr, mi
+from irradia.transport.geometry import Hit, SurfacePoint
+from irradia.transport.materials import DOUBLE_SIDED, FILTERS, UNLIT
+from irradia.transport.sampling import Sampler, cosine_hemisphere, to_world
+from irradia.transport.world import HAS_TEXEL, TriangleRecord, World
+
+_ROULETTE_FROM = 4
+_MAX_SEGMENTS = 1024  # a ray caught between numerically coincident panes ends here
+
+
+class LightCache(Protocol):
+    """Stored light of mapped surfaces."""
+
+    def outgoing(self, world: World, hit: Hit, record: TriangleRecord, active: mi.Bool) -> mi.Color3f:
+        """Radiance that leaves the front of a surface, emission not counted."""
+        ...
+
+
+@dataclass
+class Segment:
+    """A ray on its way, and what it has gathered.
+
+    Attributes:
+        origin, direction: The ray.
+        throughput: What its radiance is multiplied by.
+        radiance: Gathered so far.
+        pdf: Solid-angle density with which its direction was drawn.
+        nee_ratio: Next-event samples per ray where it started; 0 for a camera ray, so that all
+            it meets weighs 1.
+        travelled: Distance since then, through what let it pass.
+        bounces, segments: Counters.
+        sampler: Its random numbers.
+        met_back: Whether the first surface that stopped it was seen from behind.
+        active: Whether it goes on.
+    """
+
+    origin: mi.Point3f
+    direction: mi.Vector3f
+    throughput: mi.Color3f
+    radiance: mi.Color3f
+    pdf: mi.Float
+    nee_ratio: mi.Float
+    travelled: mi.Float
+    bounces: mi.UInt32
+    segments: mi.UInt32
+    sampler: Sampler
+    met_back: mi.Bool
+    active: mi.Bool
+
+
+def start(
+    origin: mi.Point3f,
+    direction: mi.Vector3f,
+    pdf: mi.Float,
+    nee_ratio: mi.Float,
+    sampler: Sampler,
+    active: mi.Bool,
+) -> Segment:
+    """A ray that has gathered nothing yet."""
+    zero = mi.UInt32(0)
+    return Segment(
+        origin=mi.Point3f(origin),
+        direction=mi.Vector3f(direction),
+        throughput=mi.Color3f(1.0),
+        radiance=mi.Color3f(0.0),
+        pdf=mi.Float(pdf),
+        nee_ratio=mi.Float(nee_ratio),
+        travelled=mi.Float(0.0),
+        bounces=zero,
+        segments=mi.UInt32(0),
+        sampler=Sampler(mi.UInt32(sampler.index), mi.UInt32(sampler.seed)),
+        met_back=mi.Bool(False),
+        active=mi.Bool(active),
+    )
+
+
+def trace(
+    world: World, ray: Segment, cache: LightCache | None = None, *, cull_backs: bool = False
+) -> Segment:
+    """Follows rays to their end.
+
+    Args:
+        world: The scene.
+        ray: From :func:`start`.
+        cache: Light of mapped surfaces, or None for a pure path tracer.
+        cull_backs: Camera rays pass through single-sided surfaces seen from behind, as in engines.
+    """
+    if cache is not None and world.straight and not cull_backs:
+        return _advance(world, ray, cache, cull_backs)
+
+    def step(ray: Segment) -> tuple[Segment]:
+        return (_advance(world, ray, cache, cull_backs),)
+
+    return dr.while_loop(state=(ray,), cond=lambda ray: ray.active, body=step, label="path")[0]
+
+
+def _advance(world: World, ray: Segment, cache: LightCache | None, cull_backs: bool) -> Segment:
+    """One segment: to the next surface, and what happens there."""
+    hit = world.geometry.intersect(ray.origin, ray.direction, ray.active)
+
+    # ---- out of the scene ----
+    missed = ray.active & ~hit.valid
+    sky, sky_pdf = world.lights.environment_radiance(ray.direction, missed)
+    ray.radiance += dr.select(missed, ray.throughput * sky * _ray_weight(ray, sky_pdf), 0.0)
+    active = ray.active & hit.valid
+
+    record = world.record(hit.triangle, hit.bary, active)
+    back = dr.dot(record.ng, ray.direction) > 0.0
+    one_sided = (record.flags & DOUBLE_SIDED) == 0
+
+    # ---- let through ----
+    passes, stop_weight = mi.Bool(False), mi.Float(1.0)
+    if world.filters:
+        thin = active & ((record.flags & FILTERS) != 0)
+        appearance = world.appearance(hit.triangle, hit.bary, thin)
+        probability = appearance.pass_probability
+        passes = thin & (ray.sampler.next_1d() < probability)
+        stop_weight = dr.select(thin & ~passes, dr.rcp(dr.maximum(1.0 - probability, 1e-6)), 1.0)
+        tint = appearance.through / dr.maximum(probability, 1e-6)
+        ray.throughput = dr.select(passes, ray.throughput * tint, ray.throughput)
+    if cull_backs:
+        passes = passes | (active & back & one_sided & (ray.bounces == 0))
+    stops = active & ~passes
+
+    # ---- emission met on the way, weighed against next-event estimation ----
+    ray.travelled += dr.select(active, hit.t, 0.0)
+    cos_light = dr.dot(record.ng, ray.direction) * dr.rsqrt(dr.maximum(dr.squared_norm(record.ng), 1e-37))
+    light_pdf = world.lights.area_pdf(hit.triangle, ray.travelled, cos_light, stops)
+    emitted = world.emission(hit.triangle, hit.bary, back, stops)
+    ray.radiance += dr.select(
+        stops, ray.throughput * emitted * (stop_weight * _ray_weight(ray, light_pdf)), 0.0
+    )
+
+    # ---- a back reflects nothing; a mapped front may know its light ----
+    blocked = stops & back & one_sided
+    ray.met_back |= blocked & (ray.bounces == 0)
+    ends = blocked | (stops & ((record.flags & UNLIT) != 0))
+    if cache is not None:
+        known = stops & ~ends & ~back & ((record.flags & HAS_TEXEL) != 0)
+        ray.radiance += dr.select(known, ray.throughput * cache.outgoing(world, hit, record, known), 0.0)
+        ends |= known
+
+    # ---- otherwise the path goes on ----
+    ray.active = mi.Bool(passes)  # a copy: |= below works in place
+    if cache is None or not world.straight or cull_backs:
+        bounces = stops & ~ends
+        ray = _bounce(world, ray, hit, back, stop_weight, bounces)
+        beyond = world.geometry.step_past(ray.origin, ray.direction, hit.t)
+        ray.origin = dr.select(passes, beyond, ray.origin)
+        ray.segments += 1
+        ray.active &= ray.segments < _MAX_SEGMENTS
+    return ray
+
+
+def _ray_weight(ray: Segment, light_pdf: mi.Float) -> mi.Float:
+    """Balance heuristic for light that a ray met."""
+    return ray.pdf / dr.maximum(ray.pdf + ray.nee_ratio * light_pdf, 1e-30)
+
+
+def _bounce(
+    world: World, ray: Segment, hit: Hit, back: mi.Bool, stop_weight: mi.Float, active: mi.Bool
+) -> Segment:
+    """Next-event estimation at a surface and a new direction from it."""
+    point = world.point(hit.triangle, hit.bary, active, back)
+    reflectance = world.appearance(hit.triangle, hit.bary, active).reflectance
+    throughput = ray.throughput * reflectance * stop_weight
+    active = active & (dr.max(throughput) > 0.0)
+    ray.radiance += throughput * direct(world, point, ray.sampler, mi.Float(1.0), active)
+
+    local = cosine_hemisphere(ray.sampler.next_2d())
+    direction = to_world(point.ns, local)
+    goes_on = active & (dr.dot(direction, point.ng) > 0.0) & (local.z > 0.0)
+    survival = dr.select(ray.bounces >= _ROULETTE_FROM, dr.minimum(dr.max(throughput), 0.95), 1.0)
+    goes_on &= ray.sampler.next_1d() < survival
+
+    ray.throughput = dr.select(goes_on, throughput / survival, ray.throughput)
+    ray.origin = dr.select(goes_on, point.origin, ray.origin)
+    ray.direction = dr.select(goes_on, direction, ray.direction)
+    ray.pdf = dr.select(goes_on, local.z * (1.0 / math.pi), ray.pdf)
+    ray.nee_ratio = dr.select(goes_on, 1.0, ray.nee_ratio)
+    ray.travelled = dr.select(goes_on, 0.0, ray.travelled)
+    ray.bounces = dr.select(active, ray.bounces + 1, ray.bounces)
+    ray.active |= goes_on
+    return ray
+
+
+def direct(
+    world: World, point: SurfacePoint, sampler: Sampler, nee_ratio: mi.Float, active: mi.Bool
+) -> mi.Color3f:
+    """One next-event sample of E/π at a surface point, MIS-weighted against cosine-drawn rays."""
+    lights = world.lights
+    if not lights.any:
+        return mi.Color3f(0.0)
+    u, pick = sampler.next_2d(), sampler.next_1d()
+    sample = lights.sample(world.geometry, world.emission, point, pick, u, active)
+    cosine = dr.dot(point.ns, sample.direction)
+    above = active & (cosine > 0.0) & (dr.dot(point.ng, sample.direction) > 0.0)
+    above &= dr.max(sample.weight) > 0.0
+    ray_pdf = cosine * (1.0 / math.pi)
+    weighed = nee_ratio * sample.pdf
+    weight = dr.select(sample.pdf > 0.0, weighed / dr.maximum(weighed + ray_pdf, 1e-30), 1.0)
+    arriving = world.transmittance(point.origin, sample.direction, sample.distance, above)
+    return dr.select(above, sample.weight * arriving * (ray_pdf * weight), 0.0)

@@ -1,0 +1,202 @@
+"""Light arriving at texels: the kernels of the lightmap bake.
+
+One lane is one texel. A pass takes one of the texel's sub-samples, draws a few rays from it in a
+loop inside the kernel, and adds what they bring to that texel's sums: no scatter, so the same bits
+come out for any number of threads, and no value returns to the host.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irradia.transport.backend import dr, mi
+from irradia.transport.geometry import Hit, SurfacePoint
+from irradia.transport.path import LightCache, direct, start, trace
+from irradia.transport.sampling import Sampler, cosine_hemisphere, hash_u32, to_world
+from irradia.transport.world import TriangleRecord, World
+
+
+class RadiosityCache:
+    """Radiance leaving each texel of the map, ρ · E/π, read by the nearest texel."""
+
+    def __init__(self, radiosity: mi.Float, width_px: int) -> None:
+        self._radiosity = radiosity
+        self._width = width_px
+
+    def outgoing(self, world: World, hit: Hit, record: TriangleRecord, active: mi.Bool) -> mi.Color3f:
+        """See :class:`LightCache`."""
+        pixel = record.page_start + mi.UInt32(record.pixel.y) * self._width + mi.UInt32(record.pixel.x)
+        value = dr.gather(mi.Vector4f, self._radiosity, pixel, active)
+        return mi.Color3f(value.x, value.y, value.z)
+
+
+@dataclass
+class TexelSums:
+    """Running sums over rays; E/π is their quotient.
+
+    Attributes:
+        light: (N) sum of weighted radiance.
+        backs: (N) rays that a back face stopped first.
+        count: Rays drawn per texel so far.
+    """
+
+    light: mi.Color3f
+    backs: mi.Float
+    count: int
+
+    @property
+    def mean(self) -> mi.Color3f:
+        """E/π."""
+        return self.light / max(self.count, 1)
+
+
+class TexelLight:
+    """The texels of a lightmap, on the device, and the passes over them.
+
+    Args:
+        world: The scene.
+        pixel: (N,) flat pixel of each texel: seeds its random numbers, so that they don't depend
+            on which other texels there are.
+        triangle: (N, S) triangle under each sub-sample.
+        barycentric: (N, S, 2).
+        nee_ratio: Next-event samples per gather ray that the whole bake will have drawn.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        pixel: NDArray[np.uint32],
+        triangle: NDArray[np.uint32],
+        barycentric: NDArray[np.float32],
+        nee_ratio: float,
+    ) -> None:
+        self.world = world
+        self._n_pages = int(pixel[-1]) // (world.page_width * world.page_height) + 1 if len(pixel) else 1
+        self.n_texels, self._n_subsamples = triangle.shape
+        self._pixel = mi.UInt32(pixel)
+        self._triangle = mi.UInt32(np.ascontiguousarray(triangle.T).ravel())
+        self._bary = [mi.Float(np.ascontiguousarray(barycentric[..., i].T).ravel()) for i in (0, 1)]
+        self._nee_ratio = nee_ratio
+
+    def warm_up(self, *, cached: bool) -> None:
+        """Compiles the kernels by running them with no rays."""
+        sums = self.empty_sums()
+        cache = self.cache(sums.light, sums.light) if cached else None
+        self.gather(sums, 0, 0, cache, subsample=0)
+        self.direct(sums, 0, 0)
+        self.wait()
+
+    def wait(self) -> None:
+        """Returns when all passes so far are done, so that progress tells the truth."""
+        dr.sync_thread()
+
+    def empty_sums(self) -> TexelSums:
+        """No rays yet."""
+        return TexelSums(dr.zeros(mi.Color3f, self.n_texels), dr.zeros(mi.Float, self.n_texels), 0)
+
+    def _points(self, subsample: mi.UInt32) -> tuple[mi.UInt32, mi.Point2f, SurfacePoint]:
+        """Every texel's surface point at one sub-sample."""
+        index = subsample * self.n_texels + dr.arange(mi.UInt32, self.n_texels)
+        triangle = dr.gather(mi.UInt32, self._triangle, index)
+        bary = mi.Point2f(*[dr.gather(mi.Float, b, index) for b in self._bary])
+        return triangle, bary, self.world.point(triangle, bary, mi.Bool(True))
+
+    def _texel_seed(self, seed: int) -> mi.UInt32:
+        return hash_u32(self._pixel ^ hash_u32(dr.opaque(mi.UInt32, seed)))
+
+    def reflectance(self) -> mi.Color3f:
+        """Mean ρ over each texel's footprint, of the light that stops there."""
+        rho, stops = dr.zeros(mi.Color3f, self.n_texels), dr.zeros(mi.Float, self.n_texels)
+        for subsample in range(self._n_subsamples):
+            triangle, bary, _ = self._points(dr.opaque(mi.UInt32, subsample))
+            looks = self.world.appearance(triangle, bary, mi.Bool(True))
+            rho += looks.reflectance
+            stops += 1.0 - looks.pass_probability
+            dr.eval(rho, stops)
+        return rho / dr.maximum(stops, 1e-6)
+
+    def gather(
+        self, sums: TexelSums, n_rays: int, seed: int, cache: LightCache | None, *, subsample: int
+    ) -> TexelSums:
+        """Adds ``n_rays`` cosine-distributed rays to every texel, from one sub-sample."""
+        _, _, point = self._points(dr.opaque(mi.UInt32, subsample % self._n_subsamples))
+        texel_seed = self._texel_seed(seed)
+        first, last = dr.opaque(mi.UInt32, sums.count), dr.opaque(mi.UInt32, sums.count + n_rays)
+        ratio = dr.opaque(mi.Float, self._nee_ratio)
+        light, backs = self._gather_loop(point, texel_seed, first, last, ratio, cache)
+        result = TexelSums(sums.light + light, sums.backs + backs, sums.count + n_rays)
+        dr.eval(result.light, result.backs)
+        return result
+
+    @dr.syntax
+    def _gather_loop(self, point, texel_seed, first, last, ratio, cache):
+        world = self.world
+        light, backs = mi.Color3f(0.0), mi.Float(0.0)
+        k = mi.UInt32(first)
+        while k < last:
+            sampler = Sampler(mi.UInt32(k), mi.UInt32(texel_seed))
+            local = cosine_hemisphere(sampler.next_2d())
+            direction = to_world(point.ns, local)
+            above = (dr.dot(direction, point.ng) > 0.0) & (local.z > 0.0)
+            ray = start(point.origin, direction, local.z * (1.0 / math.pi), ratio, sampler, above)
+            ray = trace(world, ray, cache)
+            light += ray.radiance
+            backs += dr.select(ray.met_back, 1.0, 0.0)
+            k += 1
+        return light, backs
+
+    def direct(self, sums: TexelSums, n_samples: int, seed: int) -> TexelSums:
+        """Adds next-event samples to every texel, sub-samples taken in turn."""
+        if not self.world.lights.any:
+            return TexelSums(sums.light, sums.backs, sums.count + n_samples)
+        first, last = dr.opaque(mi.UInt32, sums.count), dr.opaque(mi.UInt32, sums.count + n_samples)
+        ratio = dr.opaque(mi.Float, self._nee_ratio)
+        light = self._direct_loop(self._texel_seed(seed), first, last, ratio)
+        result = TexelSums(sums.light + light, sums.backs, sums.count + n_samples)
+        dr.eval(result.light)
+        return result
+
+    @dr.syntax
+    def _direct_loop(self, texel_seed, first, last, ratio):
+        light = mi.Color3f(0.0)
+        k = mi.UInt32(first)
+        while k < last:
+            _, _, point = self._points(k % self._n_subsamples)
+            sampler = Sampler(mi.UInt32(k), mi.UInt32(texel_seed))
+            light += direct(self.world, point, sampler, ratio, mi.Bool(True))
+            k += 1
+        return light
+
+    def cache(
+        self, irradiance_over_pi: mi.Color3f, reflectance: mi.Color3f, scale: float = 1.0
+    ) -> RadiosityCache:
+        """Light leaving each texel, as the next epoch will read it."""
+        width, height = self.world.page_width, self.world.page_height
+        buffer = dr.zeros(mi.Float, 4 * width * height * self._n_pages)
+        outgoing = irradiance_over_pi * reflectance * dr.opaque(mi.Float, scale)
+        value = mi.Vector4f(outgoing.x, outgoing.y, outgoing.z, 0.0)
+        dr.scatter(buffer, value, self._pixel)
+        dr.eval(buffer)
+        return RadiosityCache(buffer, width)
+
+    def mean(self, irradiance_over_pi: mi.Color3f) -> float:
+        """Mean over texels and channels: the one number that goes back to the host."""
+        return float(np.mean(self.to_host(irradiance_over_pi), dtype=np.float64))
+
+    def to_host(self, value: mi.Color3f | mi.Float) -> NDArray[np.float32]:
+        """(N, 3) or (N,) array."""
+        return np.ascontiguousarray(np.array(value).T)
+
+
+def count_launches(run: Callable[[], object]) -> int:
+    """How many kernels a piece of work launches."""
+    with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
+        dr.kernel_history_clear()
+        run()
+        dr.sync_thread()
+        return sum(entry["type"] == dr.KernelType.JIT for entry in dr.kernel_history())

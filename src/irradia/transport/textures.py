@@ -1,0 +1,140 @@
+"""All images of a scene in one buffer, looked up by number inside a kernel.
+
+An image is stored as packed RGBA8 with its mip levels behind it. A texture's settings are rows of
+two small tables, so a kernel that meets a thousand materials still has no branch per material.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irradia.core.colour import linear_from_srgb
+from irradia.scene.types import U8, Image, TextureRef
+from irradia.transport.backend import dr, mi
+
+_WRAP = {"repeat": 0, "clamp": 1, "mirror": 2}
+NO_TEXTURE = 0  # slot 0 is a white pixel, so that "factor × texture" needs no case
+
+
+class TextureTable:
+    """Collects texture slots while a scene is built, then samples them.
+
+    Call :meth:`add` for every reference, then :meth:`freeze` once, then :meth:`sample`.
+    """
+
+    def __init__(self, images: tuple[Image, ...]) -> None:
+        self._images = images
+        self._image_rows: dict[int, tuple[int, int, int]] = {}
+        self._blocks: list[NDArray[np.uint32]] = [np.array([0xFFFFFFFF], np.uint32)]
+        self._n_texels = 1
+        self._slots: dict[TextureRef | None, int] = {None: NO_TEXTURE}
+        self._int_rows: list[list[int]] = [[0, 1, 1, 0]]
+        self._float_rows: list[list[float]] = [[1, 0, 0, 0, 0, 1, 0, 0]]
+
+    def add(self, texture: TextureRef | None) -> int:
+        """The slot of a texture; the same reference has one slot."""
+        if texture not in self._slots and texture is not None:
+            first, height, width = self._store(texture.image)
+            flags = (
+                _WRAP[texture.wrap_s]
+                | _WRAP[texture.wrap_t] << 2
+                | (texture.texcoord & 1) << 4
+                | int(texture.nearest) << 5
+            )
+            self._slots[texture] = len(self._int_rows)
+            self._int_rows.append([first, width, height, flags])
+            self._float_rows.append([*texture.uv_from_texcoord[0], *texture.uv_from_texcoord[1], 0, 0])
+        return self._slots[texture]
+
+    def _store(self, image_index: int) -> tuple[int, int, int]:
+        if image_index not in self._image_rows:
+            pixels = self._images[image_index].pixels
+            height, width = pixels.shape[:2]
+            self._image_rows[image_index] = (self._n_texels, height, width)
+            block = np.ascontiguousarray(pixels).view("<u4").reshape(-1)
+            self._blocks.append(block)
+            self._n_texels += len(block)
+        return self._image_rows[image_index]
+
+    def freeze(self) -> None:
+        """Uploads the tables."""
+        self.texels = mi.UInt32(np.concatenate(self._blocks))
+        self.ints = mi.UInt32(np.array(self._int_rows, np.uint32).ravel())
+        self.floats = mi.Float(np.array(self._float_rows, np.float32).ravel())
+        self.linear = mi.Float(linear_from_srgb(np.arange(256, dtype=np.float32) / 255.0).astype(np.float32))
+        self._blocks.clear()
+
+    def sample(
+        self, slot: mi.UInt32, uv0: mi.Point2f, uv1: mi.Point2f, *, srgb: bool, active: mi.Bool
+    ) -> Rgba:
+        """Bilinear lookup; filtering is done in linear space.
+
+        Args:
+            slot: From :meth:`add`.
+            uv0: First texture coordinate set at the hit.
+            uv1: Second set.
+            srgb: Whether RGB is sRGB-coded (alpha never is).
+            active: Lanes that need a value; the others read nothing.
+        """
+        row = dr.gather(mi.Vector4u, self.ints, slot, active)
+        first, width, height, flags = row.x, row.y, row.z, row.w
+        m0 = dr.gather(mi.Vector4f, self.floats, 2 * slot, active)
+        m1 = dr.gather(mi.Vector4f, self.floats, 2 * slot + 1, active)
+        uv = dr.select((flags & 16) != 0, uv1, uv0)
+        x = (m0.x * uv.x + m0.y * uv.y + m0.z) * mi.Float(width)
+        y = (m0.w * uv.x + m1.x * uv.y + m1.y) * mi.Float(height)
+
+        nearest = (flags & 32) != 0
+        x = dr.select(nearest, dr.floor(x), x - 0.5)
+        y = dr.select(nearest, dr.floor(y), y - 0.5)
+        x0, y0 = dr.floor(x), dr.floor(y)
+        fx, fy = x - x0, y - y0
+        column = [_wrap(mi.Int32(x0) + i, mi.Int32(width), flags & 3) for i in (0, 1)]
+        line = [_wrap(mi.Int32(y0) + i, mi.Int32(height), (flags >> 2) & 3) for i in (0, 1)]
+
+        total = Rgba(mi.Color3f(0.0), mi.Float(0.0))
+        for j, wy in ((0, 1.0 - fy), (1, fy)):
+            for i, wx in ((0, 1.0 - fx), (1, fx)):
+                index = first + mi.UInt32(line[j]) * width + mi.UInt32(column[i])
+                texel = dr.gather(mi.UInt32, self.texels, index, active)
+                total = total.plus(self._decode(texel, srgb, active), wx * wy)
+        return total
+
+    def _decode(self, texel: mi.UInt32, srgb: bool, active: mi.Bool) -> Rgba:
+        channels = [texel & 255, (texel >> 8) & 255, (texel >> 16) & 255]
+        if srgb:
+            rgb = mi.Color3f(*[dr.gather(mi.Float, self.linear, c, active) for c in channels])
+        else:
+            rgb = mi.Color3f(*[mi.Float(c) for c in channels]) * (1.0 / 255.0)
+        return Rgba(rgb, mi.Float(texel >> 24) * (1.0 / 255.0))
+
+
+@dataclass
+class Rgba:
+    """Linear colour and alpha."""
+
+    rgb: mi.Color3f
+    alpha: mi.Float
+
+    def plus(self, other: Rgba, weight: mi.Float) -> Rgba:
+        """Adds ``other · weight``."""
+        return Rgba(self.rgb + other.rgb * weight, self.alpha + other.alpha * weight)
+
+
+def _wrap(index: mi.Int32, size: mi.Int32, mode: mi.UInt32) -> mi.Int32:
+    """Brings a texel index into [0, size) by repeating, clamping or mirroring."""
+    repeated = index % size
+    repeated = dr.select(repeated < 0, repeated + size, repeated)
+    clamped = dr.clip(index, 0, size - 1)
+    period = index % (2 * size)
+    period = dr.select(period < 0, period + 2 * size, period)
+    mirrored = dr.minimum(period, 2 * size - 1 - period)
+    return dr.select(mode == 0, repeated, dr.select(mode == 1, clamped, mirrored))
+
+
+def mean_colour(pixels: U8) -> NDArray[np.float64]:
+    """Mean linear RGB of an sRGB image."""
+    return linear_from_srgb(pixels[..., :3].astype(np.float32) / 255.0).reshape(-1, 3).mean(0)
