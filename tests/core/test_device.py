@@ -11,11 +11,6 @@ from irradia.core.errors import InputError, MissingDependencyError
 from irradia.core.libllvm import VARIABLE
 
 
-@pytest.fixture(autouse=True)
-def _forget(monkeypatch):
-    monkeypatch.setattr(device, "_prepared", [])
-
-
 @pytest.fixture
 def without_gpu(monkeypatch):
     monkeypatch.setattr(
@@ -64,11 +59,6 @@ def test_auto_falls_back_where_optix_is_missing(monkeypatch):
 def test_a_missing_driver_library_is_reported(monkeypatch):
     monkeypatch.setattr(device, "_load", lambda library: None)
     assert device.cuda_status().problem == "no NVIDIA driver was found"
-
-
-def test_transport_gets_the_device_that_the_command_asked_for(with_gpu):
-    assert device.prepare("cpu", threads=1) == device.current()
-    assert device.current().threads == 1
 
 
 @pytest.mark.parametrize(("choice", "threads"), [("gpu", None), ("cpu", 0), ("cpu", -3)])

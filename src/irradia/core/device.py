@@ -65,19 +65,17 @@ def prepare(choice: DeviceChoice = "auto", threads: int | None = None) -> Device
         raise InputError(f"expected auto, cpu or cuda, found {choice!r}", where="--device")
     if threads is not None and threads < 1:
         raise InputError(f"expected at least 1 thread, found {threads}", where="--threads")
-    _prepared[:] = [_choose(choice, threads or available_threads())]
-    return _prepared[0]
+    n_threads = threads or available_threads()
+    if choice != "cpu":
+        status = cuda_status()
+        if status.gpu and status.optix:
+            return Device("cuda", status.gpu, n_threads)
+        if choice == "cuda":
+            raise MissingDependencyError(status.problem, where="--device cuda", fix=CUDA_FIX)
+    found = find_libllvm().candidate
+    os.environ[VARIABLE] = str(found.path)
+    return Device("cpu", cpu_name(), n_threads, found.path, found.major)
 
-
-def current() -> Device:
-    """The device that :func:`prepare` made ready last, or the automatic choice.
-
-    Dr.Jit is set up once per process, so this is where transport learns what the command asked for.
-    """
-    return _prepared[0] if _prepared else prepare()
-
-
-_prepared: list[Device] = []  # at most one
 
 CUDA_FIX = "Install NVIDIA's driver with its OptiX library (libnvoptix), or use --device cpu."
 
@@ -112,18 +110,6 @@ def cpu_name() -> str:
         if line.startswith("model name"):
             return line.split(":", 1)[1].strip()
     return platform.processor() or platform.machine()
-
-
-def _choose(choice: DeviceChoice, threads: int) -> Device:
-    if choice != "cpu":
-        status = cuda_status()
-        if status.gpu and status.optix:
-            return Device("cuda", status.gpu, threads)
-        if choice == "cuda":
-            raise MissingDependencyError(status.problem, where="--device cuda", fix=CUDA_FIX)
-    found = find_libllvm().candidate
-    os.environ[VARIABLE] = str(found.path)
-    return Device("cpu", cpu_name(), threads, found.path, found.major)
 
 
 def _load(library: str) -> ctypes.CDLL | None:
