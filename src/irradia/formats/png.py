@@ -1,0 +1,98 @@
+"""PNG: written here, so that the same pixels are the same bytes; read with Pillow.
+
+This work is based on: PNG Specification (third edition), W3C, 2025, sections 9 (filters) and 12.7
+(the smallest sum of absolute differences chooses a row's filter).
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irradia.core.colour import linear_from_srgb
+from irradia.core.errors import InputError
+from irradia.core.files import write_atomic
+from irradia.formats.limits import check_image_size
+
+U8 = NDArray[np.uint8]
+_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+_COLOUR_TYPE = {1: 0, 2: 4, 3: 2, 4: 6}  # channels → grey, grey + alpha, RGB, RGBA
+
+
+def write_png(path: Path | str, pixels: NDArray) -> None:
+    """Writes :func:`encode_png`'s bytes."""
+    data = encode_png(pixels)
+    with write_atomic(path) as stream:
+        stream.write(data)
+
+
+def encode_png(pixels: NDArray) -> bytes:
+    """A PNG of (H, W) or (H, W, 1 … 4) uint8 or uint16 pixels, as they are: nothing is sRGB-coded here."""
+    planes = pixels if pixels.ndim == 3 else pixels[..., None]
+    height, width, n_channels = planes.shape
+    depth = planes.dtype.itemsize * 8
+    if planes.dtype not in (np.uint8, np.uint16) or n_channels not in _COLOUR_TYPE:
+        raise InputError(f"expected 1 to 4 channels of uint8 or uint16, found {planes.shape} {planes.dtype}")
+    check_image_size(width, height, "PNG")
+    head = struct.pack(">IIBBBBB", width, height, depth, _COLOUR_TYPE[n_channels], 0, 0, 0)
+    rows = np.ascontiguousarray(planes, planes.dtype.newbyteorder(">")).view(np.uint8).reshape(height, -1)
+    body = zlib.compress(_filtered(rows, n_channels * depth // 8).tobytes(), 9)
+    return _SIGNATURE + _chunk(b"IHDR", head) + _chunk(b"IDAT", body) + _chunk(b"IEND", b"")
+
+
+def read_png_linear(path: Path | str) -> NDArray[np.float32]:
+    """Reads an sRGB-coded PNG (or JPEG) as (H, W, 3) linear values in [0, 1]; alpha is dropped.
+
+    Grey keeps 16 bits; Pillow gives 16-bit colour as its high 8 bits.
+
+    Raises:
+        InputError: No such file, no image, cut short, or absurdly large.
+    """
+    from PIL import Image
+
+    try:
+        with Image.open(path) as image:
+            check_image_size(*image.size, str(path))
+            wide = image.mode.startswith("I")
+            coded = np.asarray(image if wide else image.convert("RGB"), np.float32)
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+        raise InputError(f"the image can't be read: {error}", where=str(path)) from error
+    if wide:
+        coded = np.repeat(coded[..., None], 3, axis=-1)
+    return linear_from_srgb(coded / np.float32(65535.0 if wide else 255.0))
+
+
+def _chunk(kind: bytes, body: bytes) -> bytes:
+    return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+
+
+def _filtered(rows: U8, pixel_bytes: int) -> U8:
+    """(H, 1 + row bytes): each row filtered in the way that leaves the smallest differences."""
+    best = np.zeros((len(rows), rows.shape[1] + 1), np.uint8)
+    lowest = np.full(len(rows), np.iinfo(np.int64).max)
+    for kind, prediction in enumerate(_predictions(rows, pixel_bytes)):
+        residual = rows - prediction
+        cost = np.abs(residual.view(np.int8).astype(np.int16)).sum(axis=1, dtype=np.int64)
+        better = cost < lowest
+        lowest = np.where(better, cost, lowest)
+        best[better, 0] = kind
+        best[better, 1:] = residual[better]
+    return best
+
+
+def _predictions(rows: U8, pixel_bytes: int) -> tuple[U8, ...]:
+    """What each of the five filters subtracts: nothing, left, up, their mean, Paeth's choice."""
+    left = np.zeros_like(rows)
+    left[:, pixel_bytes:] = rows[:, :-pixel_bytes]
+    up = np.zeros_like(rows)
+    up[1:] = rows[:-1]
+    corner = np.zeros_like(rows)
+    corner[1:] = left[:-1]
+    a, b, c = (plane.astype(np.int16) for plane in (left, up, corner))
+    to_a, to_b, to_c = np.abs(b - c), np.abs(a - c), np.abs(a + b - 2 * c)
+    paeth = np.where((to_a <= to_b) & (to_a <= to_c), left, np.where(to_b <= to_c, up, corner))
+    return np.zeros_like(rows), left, up, ((a + b) // 2).astype(np.uint8), paeth
