@@ -1,0 +1,182 @@
+"""What is placed on the pages: loose charts, or one rectangle for each instance of a primitive."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from irradia.scene.lightmap_uv.pack import Islands, Placement, pack, rectangle
+from irradia.scene.lightmap_uv.receivers import Receiver
+from irradia.scene.lightmap_uv.unwrap import triangle_areas
+from irradia.scene.types import F32, F64
+
+# Instances smaller than this share of the median get more texels than they asked for: the free space
+# between charts shrinks with the rectangle.
+_MIN_RATIO = 0.5
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One instance of a receiver.
+
+    Attributes:
+        receiver: Index into the list of receivers.
+        slot: Which of the receiver's instances.
+        metres_per_uv: See :class:`Receiver`; smaller where the piece had to be shrunk.
+        uv_area: Area of the charts in uv units.
+    """
+
+    receiver: int
+    slot: int
+    metres_per_uv: float
+    uv_area: float
+
+    def texels(self, density: float) -> float:
+        """Texels that its surface asks for, without borders."""
+        return self.uv_area * (self.metres_per_uv * density) ** 2
+
+    def shrunk(self, factor: float) -> Piece:
+        """The same piece with fewer texels a metre."""
+        return replace(self, metres_per_uv=self.metres_per_uv * factor)
+
+
+@dataclass(frozen=True)
+class Block:
+    """A receiver's charts arranged for all its instances alike.
+
+    Attributes:
+        uv: (V', 2) as the unwrap will hold it.
+        low, high: (2,) bounds of ``uv``.
+        size_px: (2,) texels it wants where a uv unit has ``texels_per_uv``.
+    """
+
+    uv: F32
+    low: F64
+    high: F64
+    size_px: F64
+    texels_per_uv: float
+
+    def size_at(self, texels_per_uv: float) -> tuple[int, int]:
+        """Whole texels of the rectangle at some other density."""
+        ratio = texels_per_uv / self.texels_per_uv if self.texels_per_uv > 0 else 1.0
+        width, height = np.maximum(np.rint(self.size_px * ratio), 1).astype(int)
+        return int(width), int(height)
+
+
+@dataclass(frozen=True)
+class Page:
+    """A packed page: for each piece its uv → page texel transform, per chart or one for all.
+
+    Attributes:
+        edge_px: The larger of width and height.
+        placements: One per piece; of a block, with a single row.
+    """
+
+    edge_px: int
+    placements: tuple[Placement, ...]
+
+
+def make_pieces(receivers: Sequence[Receiver]) -> list[Piece]:
+    """One piece for each instance that takes a lightmap."""
+    pieces = []
+    for number, receiver in enumerate(receivers):
+        charts = receiver.charts
+        area = float(triangle_areas(charts.uv, charts.indices)[charts.solid].sum())
+        for slot, metres in enumerate(receiver.metres_per_uv):
+            pieces.append(Piece(number, slot, float(metres), area))
+    return pieces
+
+
+def make_blocks(receivers: Sequence[Receiver], density: float, padding_px: int) -> dict[int, Block]:
+    """Arranges the charts of each receiver that isn't loose; keyed by receiver."""
+    blocks = {}
+    for number, receiver in enumerate(receivers):
+        if receiver.loose:
+            continue
+        reference = receiver.median_metres_per_uv * density
+        fixed = receiver.from_file or receiver.charts.n_charts == 0
+        arrange = _as_it_is if fixed else _arranged
+        blocks[number] = arrange(receiver, reference, padding_px)
+    return blocks
+
+
+def pack_page(
+    receivers: Sequence[Receiver],
+    blocks: dict[int, Block],
+    pieces: Sequence[Piece],
+    density: float,
+    padding_px: int,
+) -> Page:
+    """Packs some pieces at a density in texels per metre."""
+    sizes = {
+        i: _block_size(blocks[p.receiver], p, density) for i, p in enumerate(pieces) if p.receiver in blocks
+    }
+    groups = [
+        rectangle(*sizes[i]) if i in sizes else _islands(receivers[piece.receiver], piece, density)
+        for i, piece in enumerate(pieces)
+    ]
+    width, height, placements = pack(groups, padding_px)
+    for i, piece in enumerate(pieces):
+        if i in sizes:
+            placements[i] = _into_rectangle(blocks[piece.receiver], sizes[i], placements[i])
+        else:
+            factor = piece.metres_per_uv * density
+            placements[i] = Placement(placements[i].scale * factor, placements[i].offset)
+    return Page(max(width, height), tuple(placements))
+
+
+def _islands(receiver: Receiver, piece: Piece, density: float) -> Islands:
+    charts = receiver.charts
+    return Islands(
+        uv=(charts.uv * (piece.metres_per_uv * density)).astype(np.float32),
+        indices=charts.indices[charts.solid],
+        island=charts.chart[charts.solid],
+    )
+
+
+def _block_size(block: Block, piece: Piece, density: float) -> tuple[int, int]:
+    return block.size_at(max(piece.metres_per_uv * density, _MIN_RATIO * block.texels_per_uv))
+
+
+def _arranged(receiver: Receiver, texels_per_uv: float, padding_px: int) -> Block:
+    """Our own charts, packed for the rectangle; farther apart where some instances shrink it."""
+    charts = receiver.charts
+    smallest = float(receiver.metres_per_uv.min()) / receiver.median_metres_per_uv
+    padding = int(np.ceil(padding_px / np.clip(smallest, _MIN_RATIO, 1.0)))
+    islands = Islands(
+        uv=(charts.uv * texels_per_uv).astype(np.float32),
+        indices=charts.indices[charts.solid],
+        island=charts.chart[charts.solid],
+    )
+    width, height, (placement,) = pack([islands], padding)
+    chart_of_vertex = np.zeros(len(charts.uv), np.int64)
+    chart_of_vertex[charts.indices] = charts.chart[:, None]
+    px = islands.uv * placement.scale[chart_of_vertex] + placement.offset[chart_of_vertex]
+    extent = np.array([width - 1.0, height - 1.0])
+    return Block(
+        uv=((px - 0.5) / np.maximum(extent, 1.0)).astype(np.float32),
+        low=np.zeros(2),
+        high=np.ones(2),
+        size_px=extent + 1.0,
+        texels_per_uv=texels_per_uv,
+    )
+
+
+def _as_it_is(receiver: Receiver, texels_per_uv: float, _padding_px: int) -> Block:
+    """The file's own uv, or a surface without area."""
+    charts = receiver.charts
+    used = charts.uv[np.unique(charts.indices)].astype(np.float64)
+    low, high = used.min(axis=0), used.max(axis=0)
+    return Block(charts.uv, low, high, (high - low) * texels_per_uv + 1.0, texels_per_uv)
+
+
+def _into_rectangle(block: Block, size: tuple[int, int], placed: Placement) -> Placement:
+    """Spans a block's bounds from the first to the last texel centre of its rectangle."""
+    origin = np.rint(placed.offset[0] - 0.5)
+    extent = np.array(size, np.float64) - 1.0
+    span = block.high - block.low
+    inset = np.where((extent > 0) | (span == 0), 0.5, 0.25)  # a single texel keeps some area
+    scale = np.where(extent > 0, extent, 0.5) / np.where(span > 0, span, np.inf)
+    return Placement(scale=scale[None], offset=(origin + inset - block.low * scale)[None])
