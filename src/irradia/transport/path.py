@@ -184,7 +184,8 @@ def _bounce(
     reflectance = world.appearance(hit.triangle, hit.bary, active).reflectance
     throughput = ray.throughput * reflectance * stop_weight
     active = active & (dr.max(throughput) > 0.0)
-    ray.radiance += throughput * direct(world, point, ray.sampler, mi.Float(1.0), active)
+    arriving = direct(world, point, ray.sampler, mi.Float(1.0), active)
+    ray.radiance += dr.select(active, throughput * arriving, 0.0)
 
     local = cosine_hemisphere(ray.sampler.next_2d())
     direction = to_world(point.ns, local)

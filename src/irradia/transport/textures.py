@@ -92,13 +92,13 @@ class TextureTable:
         y = dr.select(nearest, dr.floor(y), y - 0.5)
         x0, y0 = dr.floor(x), dr.floor(y)
         fx, fy = x - x0, y - y0
-        column = [_wrap(mi.Int32(x0) + i, mi.Int32(width), flags & 3) for i in (0, 1)]
-        line = [_wrap(mi.Int32(y0) + i, mi.Int32(height), (flags >> 2) & 3) for i in (0, 1)]
+        column = [_wrap(x0 + i, mi.Float(width), flags & 3) for i in (0.0, 1.0)]
+        line = [_wrap(y0 + i, mi.Float(height), (flags >> 2) & 3) for i in (0.0, 1.0)]
 
         total = Rgba(mi.Color3f(0.0), mi.Float(0.0))
         for j, wy in ((0, 1.0 - fy), (1, fy)):
             for i, wx in ((0, 1.0 - fx), (1, fx)):
-                index = first + mi.UInt32(line[j]) * width + mi.UInt32(column[i])
+                index = first + line[j] * width + column[i]
                 texel = dr.gather(mi.UInt32, self.texels, index, active)
                 total = total.plus(self._decode(texel, srgb, active), wx * wy)
         return total
@@ -124,15 +124,18 @@ class Rgba:
         return Rgba(self.rgb + other.rgb * weight, self.alpha + other.alpha * weight)
 
 
-def _wrap(index: mi.Int32, size: mi.Int32, mode: mi.UInt32) -> mi.Int32:
-    """Brings a texel index into [0, size) by repeating, clamping or mirroring."""
-    repeated = index % size
-    repeated = dr.select(repeated < 0, repeated + size, repeated)
-    clamped = dr.clip(index, 0, size - 1)
-    period = index % (2 * size)
-    period = dr.select(period < 0, period + 2 * size, period)
-    mirrored = dr.minimum(period, 2 * size - 1 - period)
-    return dr.select(mode == 0, repeated, dr.select(mode == 1, clamped, mirrored))
+def _wrap(index: mi.Float, size: mi.Float, mode: mi.UInt32) -> mi.UInt32:
+    """Brings a whole texel number into [0, size) by repeating, clamping or mirroring.
+
+    In floats, which are exact here: integer division is slow, and traps on masked lanes.
+    """
+    size = dr.maximum(size, 1.0)
+    repeated = index - size * dr.floor(index / size)
+    period = index - 2.0 * size * dr.floor(index / (2.0 * size))
+    mirrored = dr.minimum(period, 2.0 * size - 1.0 - period)
+    clamped = dr.clip(index, 0.0, size - 1.0)
+    chosen = dr.select(mode == 0, repeated, dr.select(mode == 1, clamped, mirrored))
+    return mi.UInt32(dr.clip(chosen, 0.0, size - 1.0))
 
 
 def mean_colour(pixels: U8) -> NDArray[np.float64]:
