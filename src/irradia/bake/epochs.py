@@ -10,6 +10,7 @@ n^−(1−ρ) and never get there.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,9 +20,9 @@ from irradia.core import Progress, Seed
 
 if TYPE_CHECKING:
     from irradia.transport.path import LightCache
-    from irradia.transport.texel_light import TexelLight, TexelSums
+    from irradia.transport.texel_light import TexelLight
 
-RAYS_PER_PASS = 8
+_RAYS_PER_LAUNCH = 1 << 22
 _MAX_SETTLING = 64
 _SETTLED = 5e-4  # of the mean: what the epochs still to come may add
 
@@ -70,7 +71,7 @@ def run_epochs(
     with progress.stage("direct light", light.n_texels * n_direct, "samples") as stage:
         direct = light.empty_sums()
         while direct.count < n_direct:
-            n = min(RAYS_PER_PASS, n_direct - direct.count)
+            n = min(_rays_per_pass(light.n_texels), n_direct - direct.count)
             direct = light.direct(direct, n, seed.child("direct").uint32())
             light.wait()
             stage.advance(n * light.n_texels)
@@ -82,18 +83,18 @@ def run_epochs(
             cache = _settle(light, direct.mean, reflectance, seed.child("settle"), epochs, stage)
 
     launches = 0
+    rays_per_pass = _rays_per_pass(light.n_texels)
     sums = light.empty_sums()
     total = light.n_texels * sum(plan.sizes)
     with progress.stage("gather", total, "samples") as stage:
         for number, size in enumerate(plan.sizes):
-            stream = seed.child(f"epoch-{number}").uint32()
+            gather = partial(
+                light.gather, seed=seed.child(f"epoch-{number}").uint32(), cache=cache, first_subsample=number
+            )
             sums = light.empty_sums()
             while sums.count < size:
-                n = min(RAYS_PER_PASS, size - sums.count)
-                subsample = number + sums.count // RAYS_PER_PASS
-                step = _Pass(light, sums, n, stream, cache, subsample)
-                launches = count_launches(step.run)
-                sums = step.result
+                n = min(rays_per_pass, size - sums.count)
+                sums, launches = count_launches(partial(gather, sums, n))
                 stage.advance(n * light.n_texels)
             estimate = sums.mean + direct.mean
             epochs.append(Epoch(size, light.mean(estimate)))
@@ -104,21 +105,9 @@ def run_epochs(
     return host, back_share.astype(np.float32), epochs, launches
 
 
-@dataclass
-class _Pass:
-    """One gather pass as a callable, so that its kernel launches can be counted."""
-
-    light: TexelLight
-    sums: TexelSums
-    n_rays: int
-    seed: int
-    cache: LightCache | None
-    subsample: int
-
-    def run(self) -> None:
-        self.result = self.light.gather(
-            self.sums, self.n_rays, self.seed, self.cache, subsample=self.subsample
-        )
+def _rays_per_pass(n_texels: int) -> int:
+    """A power of two that gives a launch a few million rays, and at least one block of sub-samples."""
+    return max(8, 1 << (_RAYS_PER_LAUNCH // max(n_texels, 1)).bit_length())
 
 
 def _settle(light: TexelLight, direct, reflectance, seed: Seed, epochs: list[Epoch], stage) -> LightCache:
@@ -132,7 +121,7 @@ def _settle(light: TexelLight, direct, reflectance, seed: Seed, epochs: list[Epo
     cache = light.cache(direct, reflectance)
     means: list[float] = [light.mean(direct)]
     for _ in range(_MAX_SETTLING):
-        sums = light.gather(light.empty_sums(), 1, stream, cache, subsample=0)
+        sums = light.gather(light.empty_sums(), 1, stream, cache, first_subsample=0)
         estimate = sums.mean + direct
         means.append(light.mean(estimate))
         epochs.append(Epoch(1, means[-1]))

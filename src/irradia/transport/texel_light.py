@@ -1,6 +1,6 @@
 """Light arriving at texels: the kernels of the lightmap bake.
 
-One lane is one texel. A pass takes one of the texel's sub-samples, draws a few rays from it in a
+One lane is one texel. A pass draws a few rays from each of the texel's sub-samples in turn, in a
 loop inside the kernel, and adds what they bring to that texel's sums: no scatter, so the same bits
 come out for any number of threads, and no value returns to the host.
 """
@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,9 @@ from irradia.transport.geometry import Hit, SurfacePoint
 from irradia.transport.path import LightCache, direct, start, trace
 from irradia.transport.sampling import Sampler, cosine_hemisphere, hash_u32, to_world
 from irradia.transport.world import TriangleRecord, World
+
+_RAYS_PER_SUBSAMPLE = 8
+T = TypeVar("T")
 
 
 class RadiosityCache:
@@ -87,7 +91,7 @@ class TexelLight:
         """Compiles the kernels by running them with no rays."""
         sums = self.empty_sums()
         cache = self.cache(sums.light, sums.light) if cached else None
-        self.gather(sums, 0, 0, cache, subsample=0)
+        self.gather(sums, 0, 0, cache, first_subsample=0)
         self.direct(sums, 0, 0)
         self.wait()
 
@@ -121,33 +125,43 @@ class TexelLight:
         return rho / dr.maximum(stops, 1e-6)
 
     def gather(
-        self, sums: TexelSums, n_rays: int, seed: int, cache: LightCache | None, *, subsample: int
+        self, sums: TexelSums, n_rays: int, seed: int, cache: LightCache | None, *, first_subsample: int
     ) -> TexelSums:
-        """Adds ``n_rays`` cosine-distributed rays to every texel, from one sub-sample."""
-        _, _, point = self._points(dr.opaque(mi.UInt32, subsample % self._n_subsamples))
-        texel_seed = self._texel_seed(seed)
+        """Adds ``n_rays`` cosine-distributed rays to every texel, moving on by a sub-sample every eight."""
         first, last = dr.opaque(mi.UInt32, sums.count), dr.opaque(mi.UInt32, sums.count + n_rays)
-        ratio = dr.opaque(mi.Float, self._nee_ratio)
-        light, backs = self._gather_loop(point, texel_seed, first, last, ratio, cache)
+        shift = dr.opaque(mi.UInt32, first_subsample % self._n_subsamples)
+        light, backs = self._gather_loop(self._texel_seed(seed), first, last, shift, cache)
         result = TexelSums(sums.light + light, sums.backs + backs, sums.count + n_rays)
         dr.eval(result.light, result.backs)
         return result
 
     @dr.syntax
-    def _gather_loop(self, point, texel_seed, first, last, ratio, cache):
-        world = self.world
+    def _gather_loop(
+        self,
+        texel_seed: mi.UInt32,
+        first: mi.UInt32,
+        last: mi.UInt32,
+        shift: mi.UInt32,
+        cache: LightCache | None,
+    ) -> tuple[mi.Color3f, mi.Float]:
+        """Rays ``first`` to ``last``: from each sub-sample in turn, eight."""
         light, backs = mi.Color3f(0.0), mi.Float(0.0)
+        ratio = dr.opaque(mi.Float, self._nee_ratio)
         k = mi.UInt32(first)
         while k < last:
-            sampler = Sampler(mi.UInt32(k), mi.UInt32(texel_seed))
-            local = cosine_hemisphere(sampler.next_2d())
-            direction = to_world(point.ns, local)
-            above = (dr.dot(direction, point.ng) > 0.0) & (local.z > 0.0)
-            ray = start(point.origin, direction, local.z * (1.0 / math.pi), ratio, sampler, above)
-            ray = trace(world, ray, cache)
-            light += ray.radiance
-            backs += dr.select(ray.met_back, 1.0, 0.0)
-            k += 1
+            block = k // _RAYS_PER_SUBSAMPLE
+            _, _, point = self._points((block + shift) % self._n_subsamples)
+            block_end = dr.minimum(last, (block + 1) * _RAYS_PER_SUBSAMPLE)
+            while k < block_end:
+                sampler = Sampler(mi.UInt32(k), mi.UInt32(texel_seed))
+                local = cosine_hemisphere(sampler.next_2d())
+                direction = to_world(point.ns, local)
+                above = (dr.dot(direction, point.ng) > 0.0) & (local.z > 0.0)
+                ray = start(point.origin, direction, local.z * (1.0 / math.pi), ratio, sampler, above)
+                ray = trace(self.world, ray, cache)
+                light += ray.radiance
+                backs += dr.select(ray.met_back, 1.0, 0.0)
+                k += 1
         return light, backs
 
     def direct(self, sums: TexelSums, n_samples: int, seed: int) -> TexelSums:
@@ -193,10 +207,10 @@ class TexelLight:
         return np.ascontiguousarray(np.array(value).T)
 
 
-def count_launches(run: Callable[[], object]) -> int:
-    """How many kernels a piece of work launches."""
+def count_launches(run: Callable[[], T]) -> tuple[T, int]:
+    """Runs a piece of work to its end and counts the kernels that it launched."""
     with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
         dr.kernel_history_clear()
-        run()
+        result = run()
         dr.sync_thread()
-        return sum(entry["type"] == dr.KernelType.JIT for entry in dr.kernel_history())
+        return result, sum(entry["type"] == dr.KernelType.JIT for entry in dr.kernel_history())
