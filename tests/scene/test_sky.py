@@ -6,12 +6,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from irradia.core.colour import LUMINANCE_WEIGHTS
 from irradia.core.errors import InputError
 from irradia.scene.environment import texel_directions, texel_solid_angles
 from irradia.scene.sky import sky
 from irradia.scene.types import Environment, Light
 
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+LUMINANCE = np.array(LUMINANCE_WEIGHTS)
 
 
 @cache

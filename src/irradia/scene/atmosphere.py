@@ -80,13 +80,13 @@ class Atmosphere:
         start = np.array([0.0, EARTH_RADIUS_M + OBSERVER_HEIGHT_M, 0.0])
         # A few rays at a time stay in the processor's cache: three times as fast as all at once.
         parts = np.array_split(directions, max(1, len(directions) // 128))
-        return np.concatenate([self._march(start, part, to_sun, higher_orders, 40)[0] for part in parts])
+        return np.concatenate([self.march(start, part, to_sun, higher_orders, 40)[0] for part in parts])
 
     def _depth(self, columns: F64) -> F64:
         """(…, λ) optical thickness of (…, 3) column lengths."""
         return columns @ np.stack([self.rayleigh_per_m, self.haze_per_m, self.ozone_per_m])
 
-    def _march(
+    def march(
         self, start: F64, directions: F64, to_sun: F64, higher_orders: _HigherOrders | None, n_steps: int
     ) -> tuple[F64, F64, F64]:
         """Integrates along rays from one point.
@@ -145,7 +145,7 @@ class _HigherOrders:
         """(λ,) Ψ_ms at one point: second order over one minus the share that scatters again."""
         start = np.array([0.0, EARTH_RADIUS_M + height, 0.0])
         to_sun = np.array([np.sqrt(max(0.0, 1.0 - cos_sun**2)), cos_sun, 0.0])
-        radiance, again, through = atmosphere._march(start, directions, to_sun, None, n_steps=20)
+        radiance, again, through = atmosphere.march(start, directions, to_sun, None, n_steps=20)
         down = _hits_ground(np.full(len(directions), height), directions[:, 1])
         lit = atmosphere.transmittance(np.zeros(1), np.array([cos_sun])) * max(cos_sun, 0.0)
         radiance = radiance + np.where(down[:, None], through * lit * atmosphere.ground_albedo / np.pi, 0.0)

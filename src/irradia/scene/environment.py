@@ -144,8 +144,9 @@ def _rotate(radiance: F32, rotation_deg: float) -> F32:
     width = radiance.shape[1]
     shift = -rotation_deg / 360.0 * width
     whole = math.floor(shift)
-    fraction = np.float32(shift - whole)
+    fraction = shift - whole
     rolled = np.roll(radiance, whole, axis=1)
     if fraction == 0.0:
         return rolled
-    return (1 - fraction) * rolled + fraction * np.roll(rolled, 1, axis=1)
+    blended = (1.0 - fraction) * rolled + fraction * np.roll(rolled, 1, axis=1)
+    return blended.astype(np.float32, copy=False)
