@@ -13,8 +13,9 @@ from irradia.scene.lightmap_uv.pieces import Block, Page, Piece, make_blocks, ma
 from irradia.scene.lightmap_uv.receivers import Receiver
 
 _TYPICAL_FILL = 0.6  # share of a page that surfaces cover once borders and gaps are paid for
-_FILLED = 0.985  # a page is full when its edge is used to this share
-_MAX_TRIALS = 10
+_MIN_TRIALS, _MAX_TRIALS = 8, 40  # of packing a page; few charts pack fast, and by luck
+_CHARTS_PACKED = 20_000  # over all trials together, where the limits above allow
+_STEP_UP = 1.01  # a higher density may fit where a lower one did not: packing is not monotonic
 _MULTIPLE_PX = 4  # of page edges: block compression
 
 
@@ -74,22 +75,20 @@ def _count_charts(receivers: Sequence[Receiver]) -> int:
 
 def _fill_page(receivers: Sequence[Receiver], pieces: list[Piece], edge: int, padding_px: int) -> Plan | None:
     """The highest density found at which everything fits one page, or None."""
-    area = max(_texels(pieces, 1.0), 1e-30)
-    density = edge * np.sqrt(_TYPICAL_FILL / area)
+    n_trials = int(np.clip(_CHARTS_PACKED // _count_charts(receivers), _MIN_TRIALS, _MAX_TRIALS))
+    density = edge * np.sqrt(_TYPICAL_FILL / max(_texels(pieces, 1.0), 1e-30))
     best: Plan | None = None
-    too_high = np.inf
-    for _ in range(_MAX_TRIALS):
+    steps_up = 0
+    for _ in range(n_trials):
         blocks = make_blocks(receivers, density, padding_px)
         page = pack_page(receivers, blocks, pieces, density, padding_px)
-        if page.edge_px > edge:
-            too_high = min(too_high, density)
-        elif best is None or density > best.density:
+        if page.edge_px <= edge and (best is None or density > best.density):
             best = Plan(density, edge, blocks, (tuple(pieces),), (page,))
-            if page.edge_px >= _FILLED * edge:
-                break
+            steps_up = 0
         density *= edge / (page.edge_px + 0.5)
-        if best is not None and not best.density < density < too_high:
-            density = np.sqrt(best.density * too_high) if np.isfinite(too_high) else 1.02 * best.density
+        if best is not None and density < best.density * _STEP_UP:
+            steps_up += 1
+            density = best.density * _STEP_UP**steps_up
     return best
 
 

@@ -80,9 +80,7 @@ def _assemble(scene: Scene, receivers: Sequence[Receiver], plan: Plan, notes: li
 def _loose_unwrap(receiver: Receiver, placement: Placement, edge_px: int) -> Unwrap:
     """Page uv itself, so that the instance's scale is 1 and its offset 0."""
     charts = receiver.charts
-    chart_of_vertex = np.zeros(len(charts.uv), np.int64)
-    chart_of_vertex[charts.indices] = charts.chart[:, None]
-    px = charts.uv * placement.scale[chart_of_vertex] + placement.offset[chart_of_vertex]
+    px = placement.apply(charts.uv, charts.island_of_vertex())
     return _unwrap(receiver, np.clip(px / edge_px, 0.0, 1.0).astype(np.float32))
 
 

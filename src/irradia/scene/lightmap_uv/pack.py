@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from irradia.scene.types import F32, F64, U32
 
@@ -37,6 +38,10 @@ class Placement:
     scale: F64
     offset: F64
 
+    def apply(self, uv: NDArray, island: NDArray[np.int64]) -> F64:
+        """Page position in texels of points (V, 2) on their islands (V,)."""
+        return uv * self.scale[island] + self.offset[island]
+
 
 def rectangle(width_px: int, height_px: int) -> Islands:
     """An island that will lie on exactly that many texels; its outermost points are texel centres."""
@@ -63,7 +68,7 @@ def pack(groups: Sequence[Islands], padding_px: int) -> tuple[int, int, list[Pla
 
     options = xatlas.PackOptions()
     options.texels_per_unit = 1.0
-    options.padding = padding_px + 1  # between outermost points, which lie on texel centres
+    options.padding = (padding_px + 1) // 2  # xatlas leaves it round each of two neighbours
     options.bilinear = False
     options.rotate_charts = False
     options.rotate_charts_to_axis = False

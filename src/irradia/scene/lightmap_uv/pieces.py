@@ -12,9 +12,9 @@ from irradia.scene.lightmap_uv.receivers import Receiver
 from irradia.scene.lightmap_uv.unwrap import triangle_areas
 from irradia.scene.types import F32, F64
 
-# Instances smaller than this share of the median get more texels than they asked for: the free space
-# between charts shrinks with the rectangle.
-_MIN_RATIO = 0.5
+# The free space between charts shrinks with the rectangle. Instances that are smaller than the median
+# either get its rectangle all the same, or one of down to these shares of it, with charts farther apart.
+_FLOORS = (1.0, 0.75, 0.5, 0.25)
 
 
 @dataclass(frozen=True)
@@ -50,6 +50,7 @@ class Block:
         uv: (V', 2) as the unwrap will hold it.
         low, high: (2,) bounds of ``uv``.
         size_px: (2,) texels it wants where a uv unit has ``texels_per_uv``.
+        min_ratio: No instance gets a smaller share of that size, so that its charts stay apart.
     """
 
     uv: F32
@@ -57,12 +58,13 @@ class Block:
     high: F64
     size_px: F64
     texels_per_uv: float
+    min_ratio: float = 0.0
 
     def size_at(self, texels_per_uv: float) -> tuple[int, int]:
         """Whole texels of the rectangle at some other density."""
         ratio = texels_per_uv / self.texels_per_uv if self.texels_per_uv > 0 else 1.0
-        width, height = np.maximum(np.rint(self.size_px * ratio), 1).astype(int)
-        return int(width), int(height)
+        size = np.ceil((self.size_px - 1) * max(ratio, self.min_ratio) - 0.01).astype(int) + 1
+        return max(int(size[0]), 1), max(int(size[1]), 1)
 
 
 @dataclass(frozen=True)
@@ -111,7 +113,9 @@ def pack_page(
 ) -> Page:
     """Packs some pieces at a density in texels per metre."""
     sizes = {
-        i: _block_size(blocks[p.receiver], p, density) for i, p in enumerate(pieces) if p.receiver in blocks
+        i: blocks[p.receiver].size_at(p.metres_per_uv * density)
+        for i, p in enumerate(pieces)
+        if p.receiver in blocks
     }
     groups = [
         rectangle(*sizes[i]) if i in sizes else _islands(receivers[piece.receiver], piece, density)
@@ -136,31 +140,37 @@ def _islands(receiver: Receiver, piece: Piece, density: float) -> Islands:
     )
 
 
-def _block_size(block: Block, piece: Piece, density: float) -> tuple[int, int]:
-    return block.size_at(max(piece.metres_per_uv * density, _MIN_RATIO * block.texels_per_uv))
-
-
 def _arranged(receiver: Receiver, texels_per_uv: float, padding_px: int) -> Block:
-    """Our own charts, packed for the rectangle; farther apart where some instances shrink it."""
+    """Our own charts, packed for the rectangle so that all instances together take least room."""
+    ratios = receiver.metres_per_uv / receiver.median_metres_per_uv
+    smallest = float(ratios.min())
+    floors = _FLOORS if smallest < 0.99 else _FLOORS[:1]
+    trials = [_arranged_down_to(receiver, texels_per_uv, padding_px, max(f, smallest)) for f in floors]
+    room = [
+        float(np.prod(block.size_px)) * float((np.maximum(ratios, block.min_ratio) ** 2).sum())
+        for block in trials
+    ]
+    return trials[int(np.argmin(room))]
+
+
+def _arranged_down_to(receiver: Receiver, texels_per_uv: float, padding_px: int, min_ratio: float) -> Block:
     charts = receiver.charts
-    smallest = float(receiver.metres_per_uv.min()) / receiver.median_metres_per_uv
-    padding = int(np.ceil(padding_px / np.clip(smallest, _MIN_RATIO, 1.0)))
     islands = Islands(
         uv=(charts.uv * texels_per_uv).astype(np.float32),
         indices=charts.indices[charts.solid],
         island=charts.chart[charts.solid],
     )
+    padding = int(np.ceil((padding_px + 1) / min(min_ratio, 1.0) - 0.01)) - 1
     width, height, (placement,) = pack([islands], padding)
-    chart_of_vertex = np.zeros(len(charts.uv), np.int64)
-    chart_of_vertex[charts.indices] = charts.chart[:, None]
-    px = islands.uv * placement.scale[chart_of_vertex] + placement.offset[chart_of_vertex]
-    extent = np.array([width - 1.0, height - 1.0])
+    px = placement.apply(charts.uv * np.float32(texels_per_uv), charts.island_of_vertex())
+    extent = np.maximum(np.array([width, height], np.float64) - 1.0, 1.0)
     return Block(
-        uv=((px - 0.5) / np.maximum(extent, 1.0)).astype(np.float32),
+        uv=((px - 0.5) / extent).astype(np.float32),
         low=np.zeros(2),
         high=np.ones(2),
         size_px=extent + 1.0,
         texels_per_uv=texels_per_uv,
+        min_ratio=min_ratio,
     )
 
 

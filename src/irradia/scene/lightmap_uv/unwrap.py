@@ -47,6 +47,12 @@ class Charts:
         """Number of charts; 0 for a primitive without area."""
         return int(self.chart.max()) + 1 if self.solid.any() else 0
 
+    def island_of_vertex(self) -> NDArray[np.int64]:
+        """(V',) chart of each vertex; none belongs to two."""
+        island = np.zeros(len(self.uv), np.int64)
+        island[self.indices] = self.chart[:, None]
+        return island
+
 
 def unwrap(primitive: Primitive, linear: F64, *, use_cache: bool = True) -> Charts:
     """Charts of a primitive as it stands in the world.
