@@ -2,17 +2,43 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import click
+
+if TYPE_CHECKING:
+    from irradia.cli.lighting import LightOptions
 
 F = TypeVar("F", bound=Callable[..., None])
 
 MAX_SAMPLES = 1 << 20
+MIN_RESOLUTION_PX = 16
 MAX_RESOLUTION_PX = 16384
 MAX_SEED = (1 << 32) - 1
+
+
+class Finite(click.FloatRange):
+    """A number in a range; click's own range lets NaN and infinity through."""
+
+    name = "number"
+
+    def convert(self, value: str | float, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """The number, or a usage error."""
+        number = float(super().convert(value, param, ctx))  # type: ignore[arg-type]
+        if not math.isfinite(number):
+            self.fail(f"{value} is not a finite number.", param, ctx)
+        return number
+
+
+ANY = Finite()
+NOT_NEGATIVE = Finite(min=0.0)
+POSITIVE = Finite(min=0.0, min_open=True)
+
+# The parameters of lighting_options, as click names them.
+LIGHT_NAMES = ("env", "env_rotation", "env_strength", "env_color", "sky", "no_default_light")
 
 json_option = click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON object on stdout and nothing else there."
@@ -41,8 +67,8 @@ def lighting_options(function: F) -> F:
             type=click.Path(exists=True, dir_okay=False, path_type=Path),
             help="Environment image (.hdr, .exr), equirectangular.",
         ),
-        click.option("--env-rotation", type=float, default=0.0, metavar="DEG", help="Turns it about +Y."),
-        click.option("--env-strength", type=click.FloatRange(min=0.0), default=1.0, help="Multiplies it."),
+        click.option("--env-rotation", type=ANY, default=0.0, metavar="DEG", help="Turns it about +Y."),
+        click.option("--env-strength", type=NOT_NEGATIVE, default=1.0, help="Multiplies it."),
         click.option("--env-color", metavar="R,G,B", help="Uniform environment: linear radiance."),
         click.option("--sky", is_flag=True, help="Sun and sky."),
         click.option(
@@ -58,10 +84,32 @@ def scene_options(function: F) -> F:
         click.option("--variant", metavar="NAME", help="KHR_materials_variants: which one."),
         click.option(
             "--pose-time",
-            type=click.FloatRange(min=0.0),
+            type=NOT_NEGATIVE,
             metavar="S",
             help="Bake skins and morphs in the pose at this time.",
         ),
+    )
+
+
+def light_options(
+    *,
+    env: Path | None,
+    env_rotation: float,
+    env_strength: float,
+    env_color: str | None,
+    sky: bool,
+    no_default_light: bool,
+) -> LightOptions:
+    """What :func:`lighting_options` gave, checked."""
+    from irradia.cli.lighting import LightOptions
+
+    return LightOptions(
+        env=env,
+        env_rotation_deg=env_rotation,
+        env_strength=env_strength,
+        env_color=None if env_color is None else parse_color(env_color),
+        sky=sky,
+        default_light=not no_default_light,
     )
 
 

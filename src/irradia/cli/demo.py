@@ -1,0 +1,48 @@
+"""``irradia demo``: bakes a scene of our own, with report."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from irradia.cli import options
+from irradia.cli.output import finish
+
+SCENE = "builtin:atrium"
+
+
+@click.command("demo")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    default=Path("irradia-demo"),
+    show_default=True,
+    help="Folder for the results.",
+)
+@options.seed_option
+@options.device_option
+@options.threads_option
+@options.json_option
+def command(as_json: bool, out: Path, seed: int, device: str, threads: int | None) -> None:
+    """Bake a scene of our own, with report."""
+    from irradia.bake.lightmap import BakeOptions
+    from irradia.cli.bake import describe
+    from irradia.cli.bake_job import BakeJob, run_bake
+    from irradia.cli.bake_views import ViewOptions
+    from irradia.core.progress import stderr_progress
+
+    job = BakeJob(
+        scene=SCENE,
+        out=out,
+        bake=BakeOptions(seed=seed),
+        views=ViewOptions(seed=seed),
+        device=device,  # type: ignore[arg-type]
+        threads=threads,
+    )
+    progress = stderr_progress()
+    progress.say("Baking the atrium, a scene of our own.")
+    summary = run_bake(job, progress)
+    progress.say(f"Open {out.resolve() / 'report.html'} in a browser.\n")
+    result = {**summary.record, "out": str(out), "files": list(summary.files)}
+    finish(as_json, result, describe(job, summary))
