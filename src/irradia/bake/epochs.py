@@ -19,10 +19,14 @@ from numpy.typing import NDArray
 from irradia.core import Progress, Seed
 
 if TYPE_CHECKING:
+    from mitsuba import Color3f
+
+    from irradia.core.progress import Stage
     from irradia.transport.path import LightCache
     from irradia.transport.texel_light import TexelLight
 
 _RAYS_PER_LAUNCH = 1 << 22
+_RAYS_TO_SETTLE = 1 << 18  # an epoch of fewer settles on a mean of its own, and bounces amplify the error
 _MAX_SETTLING = 64
 _SETTLED = 5e-4  # of the mean: what the epochs still to come may add
 
@@ -80,7 +84,8 @@ def run_epochs(
     cache: LightCache | None = None
     if plan.cached:
         with progress.stage("light bounces") as stage:
-            cache = _settle(light, direct.mean, reflectance, seed.child("settle"), epochs, stage)
+            rays = min(max(_RAYS_TO_SETTLE // light.n_texels, 1), max(plan.sizes[-1] // 8, 1))
+            cache = _settle(light, direct.mean, reflectance, rays, seed.child("settle"), epochs, stage)
 
     launches = 0
     rays_per_pass = _rays_per_pass(light.n_texels)
@@ -110,8 +115,16 @@ def _rays_per_pass(n_texels: int) -> int:
     return max(8, 1 << (_RAYS_PER_LAUNCH // max(n_texels, 1)).bit_length())
 
 
-def _settle(light: TexelLight, direct, reflectance, seed: Seed, epochs: list[Epoch], stage) -> LightCache:
-    """Epochs of one ray a texel until what is still to come is below ``_SETTLED`` of the mean.
+def _settle(
+    light: TexelLight,
+    direct: TexelColour,
+    reflectance: TexelColour,
+    rays: int,
+    seed: Seed,
+    epochs: list[Epoch],
+    stage: Stage,
+) -> LightCache:
+    """Short epochs until what is still to come is below ``_SETTLED`` of the mean.
 
     All draw the same random numbers, so that the iteration is a fixed linear one whose mean
     converges geometrically; the later epochs draw fresh ones. Every third epoch jumps ahead by
@@ -121,10 +134,10 @@ def _settle(light: TexelLight, direct, reflectance, seed: Seed, epochs: list[Epo
     cache = light.cache(direct, reflectance)
     means: list[float] = [light.mean(direct)]
     for _ in range(_MAX_SETTLING):
-        sums = light.gather(light.empty_sums(), 1, stream, cache, first_subsample=0)
+        sums = light.gather(light.empty_sums(), rays, stream, cache, first_subsample=0)
         estimate = sums.mean + direct
         means.append(light.mean(estimate))
-        epochs.append(Epoch(1, means[-1]))
+        epochs.append(Epoch(rays, means[-1]))
         stage.note(f"{len(epochs)} epochs")
         scale = 1.0
         if len(means) >= 3:

@@ -23,6 +23,7 @@ from irradia.transport.world import TriangleRecord, World
 
 _RAYS_PER_SUBSAMPLE = 8
 T = TypeVar("T")
+TexelColour = mi.Color3f  # one colour a texel
 
 
 class RadiosityCache:
