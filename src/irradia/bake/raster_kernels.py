@@ -13,7 +13,8 @@ from numba import njit, prange
 from irradia.bake.texels import SUBSAMPLES
 
 ONE = 1 << 14  # fixed-point steps per texel; pages of up to 2^16 texels keep edge products below 2^62
-NO_TRIANGLE = 0xFFFFFFFF
+_RUN = 1024  # texels that share their scratch space
+_MIN_COVERAGE = 1e-6  # of triangles without area on the page
 _CLIP_CORNERS = 8  # a triangle cut by four lines has at most seven
 
 # Eight rooks that attack neither each other nor, nearly, along a diagonal: one sample in each of the
@@ -276,8 +277,16 @@ def _chart_share(fixed, chart, fragments, wanted, x, y, polygon, scratch):
 
 @njit(cache=True)
 def _owner(fixed, chart, fragments, x, y, polygon, scratch):
-    """The chart with most sub-samples, then most area, then the lowest triangle."""
+    """The chart with most sub-samples, then most area, then the lowest triangle; and its area."""
     owner = chart[fragments[0]]
+    contested = False
+    for t in fragments:
+        contested |= chart[t] != owner
+    if not contested:
+        area = 0.0
+        for t in fragments:
+            area += _area_in_texel(fixed[t], x, y, polygon, scratch)
+        return owner, area
     hits, area = _chart_share(fixed, chart, fragments, owner, x, y, polygon, scratch)
     for i in range(1, len(fragments)):
         rival = chart[fragments[i]]
@@ -290,12 +299,12 @@ def _owner(fixed, chart, fragments, x, y, polygon, scratch):
 
 
 @njit(cache=True)
-def _store(fixed, swapped, t, px, py, triangle, barycentric):
+def _store(fixed, swapped, t, px, py, triangle, barycentric, slot):
     """Records one sub-sample in the triangle's own order of corners."""
     second, third = _weights(fixed[t], px, py)
-    triangle[0] = t
-    barycentric[0] = third if swapped[t] else second
-    barycentric[1] = second if swapped[t] else third
+    triangle[slot] = t
+    barycentric[slot, 0] = third if swapped[t] else second
+    barycentric[slot, 1] = second if swapped[t] else third
 
 
 @njit(cache=True)
@@ -309,7 +318,34 @@ def _sample_sliver(fixed, swapped, chart, fragments, owner, x, y, polygon, scrat
         px, py = _nearest_to_origin(polygon, n)
         if px * px + py * py < best:
             best = px * px + py * py
-            _store(fixed, swapped, t, x + (px + 0.5) * ONE, y + (py + 0.5) * ONE, triangle, barycentric)
+            _store(fixed, swapped, t, x + (px + 0.5) * ONE, y + (py + 0.5) * ONE, triangle, barycentric, 0)
+
+
+@njit(cache=True)
+def _resolve_texel(fixed, swapped, chart, here, x, y, polygon, scratch, triangle, barycentric):
+    """Fills one texel's sub-samples; returns the chart that owns it and the share that it covers."""
+    # -- Who owns the texel
+    owner, area = _owner(fixed, chart, here, x, y, polygon, scratch)
+
+    # -- What each sub-sample sees: the lowest triangle of that chart
+    n_hits = 0
+    for s in range(SUBSAMPLES):
+        px, py = x + SUBSAMPLE_X[s], y + SUBSAMPLE_Y[s]
+        for t in here:
+            if chart[t] == owner and _contains(fixed[t], px, py):
+                _store(fixed, swapped, t, float(px), float(py), triangle, barycentric, n_hits)
+                n_hits += 1
+                break
+    if n_hits == 0:
+        _sample_sliver(fixed, swapped, chart, here, owner, x, y, polygon, scratch, triangle, barycentric)
+        n_hits = 1
+
+    # -- A texel covered in part repeats what it has
+    for s in range(n_hits, SUBSAMPLES):
+        triangle[s] = triangle[s - n_hits]
+        barycentric[s, 0] = barycentric[s - n_hits, 0]
+        barycentric[s, 1] = barycentric[s - n_hits, 1]
+    return owner, area
 
 
 @njit(cache=True, parallel=True)
@@ -331,42 +367,21 @@ def resolve(fixed, swapped, chart, pixels, offsets, fragments, width, height):
         float32, chart (N,) uint32.
     """
     n = len(pixels)
-    triangle = np.full((n, SUBSAMPLES), NO_TRIANGLE, np.uint32)
-    barycentric = np.zeros((n, SUBSAMPLES, 2), np.float32)
+    triangle = np.empty((n, SUBSAMPLES), np.uint32)
+    barycentric = np.empty((n, SUBSAMPLES, 2), np.float32)
     coverage = np.empty(n, np.float32)
     chart_of = np.empty(n, np.uint32)
-    for k in prange(n):
+    for run in prange((n + _RUN - 1) // _RUN):
         polygon = np.empty((_CLIP_CORNERS, 2))
         scratch = np.empty((_CLIP_CORNERS, 2))
-        in_page = np.int64(pixels[k]) % (width * height)
-        x = (in_page % width) * ONE
-        y = (in_page // width) * ONE
-        here = fragments[offsets[k] : offsets[k + 1]]
-
-        # -- Who owns the texel
-        owner, area = _owner(fixed, chart, here, x, y, polygon, scratch)
-        chart_of[k] = owner
-        coverage[k] = min(max(area, 1e-6), 1.0)
-
-        # -- What each sub-sample sees: the lowest triangle of that chart
-        n_hits = 0
-        for s in range(SUBSAMPLES):
-            px, py = x + SUBSAMPLE_X[s], y + SUBSAMPLE_Y[s]
-            for t in here:
-                if chart[t] == owner and _contains(fixed[t], px, py):
-                    _store(
-                        fixed, swapped, t, float(px), float(py), triangle[k, n_hits:], barycentric[k, n_hits]
-                    )
-                    n_hits += 1
-                    break
-        if n_hits == 0:
-            _sample_sliver(
-                fixed, swapped, chart, here, owner, x, y, polygon, scratch, triangle[k], barycentric[k, 0]
+        for k in range(run * _RUN, min((run + 1) * _RUN, n)):
+            in_page = np.int64(pixels[k]) % (width * height)
+            x = (in_page % width) * ONE
+            y = (in_page // width) * ONE
+            here = fragments[offsets[k] : offsets[k + 1]]
+            owner, area = _resolve_texel(
+                fixed, swapped, chart, here, x, y, polygon, scratch, triangle[k], barycentric[k]
             )
-            n_hits = 1
-
-        # -- A texel covered in part repeats what it has
-        for s in range(n_hits, SUBSAMPLES):
-            triangle[k, s] = triangle[k, s - n_hits]
-            barycentric[k, s] = barycentric[k, s - n_hits]
+            chart_of[k] = owner
+            coverage[k] = min(max(area, _MIN_COVERAGE), 1.0)
     return triangle, barycentric, coverage, chart_of
