@@ -37,7 +37,7 @@ def decode_attributes(stream: U8, count: int, stride: int) -> U8:
 
 
 @njit(cache=True)
-def _decode_blocks(stream, end, version, baseline, modes, out):  # noqa: ANN001, ANN202
+def _decode_blocks(stream, end, version, baseline, modes, out):
     """Fills ``out`` block by block."""
     count, stride = out.shape
     block_size = min(_BLOCK_BYTES // stride & ~(_GROUP - 1), 256)
@@ -68,7 +68,7 @@ def _decode_blocks(stream, end, version, baseline, modes, out):  # noqa: ANN001,
 
 
 @njit(cache=True)
-def _decode_rank(stream, position, end, control, n_elements, deltas):  # noqa: ANN001, ANN202
+def _decode_rank(stream, position, end, control, n_elements, deltas):
     """Differences of the bytes of one rank in a block; returns where it ends in the stream."""
     if control == _ALL_ZERO:
         deltas[:n_elements] = 0
@@ -91,7 +91,7 @@ def _decode_rank(stream, position, end, control, n_elements, deltas):  # noqa: A
 
 
 @njit(cache=True)
-def _decode_group(stream, position, end, bits, deltas):  # noqa: ANN001, ANN202
+def _decode_group(stream, position, end, bits, deltas):
     """16 differences of ``bits`` each; one with all bits set stands for a whole byte further on."""
     if bits == 0:
         deltas[:] = 0
@@ -117,7 +117,7 @@ def _decode_group(stream, position, end, bits, deltas):  # noqa: ANN001, ANN202
 
 
 @njit(cache=True)
-def _undo_differences(deltas, mode, previous, out):  # noqa: ANN001, ANN202
+def _undo_differences(deltas, mode, previous, out):
     """Sums up a channel of 4 bytes; ``previous`` is left at the last element."""
     kind, turn = mode & 15, mode >> 4
     for i in range(len(out)):
@@ -133,11 +133,11 @@ def _undo_differences(deltas, mode, previous, out):  # noqa: ANN001, ANN202
                 value = (int(previous[k]) | int(previous[k + 1]) << 8) + step
                 previous[k] = value & 0xFF
                 previous[k + 1] = (value >> 8) & 0xFF
-        else:  # 32 bits, rotated, that differ
+        else:  # 32 bits that differ; the encoder turned them left, as the specification's formula does
             delta = 0
             for k in range(4):
                 delta |= int(deltas[k, i]) << (8 * k)
-            delta = (delta << turn) | (delta >> ((32 - turn) & 31))
+            delta = (delta >> turn) | (delta << ((32 - turn) & 31))
             for k in range(4):
                 previous[k] = int(previous[k]) ^ ((delta >> (8 * k)) & 0xFF)
         out[i] = previous

@@ -39,7 +39,7 @@ def decode_index_sequence(stream: U8, count: int) -> U32:
 
 
 @njit(cache=True)
-def _read_varint(stream, position, end):  # noqa: ANN001, ANN202
+def _read_varint(stream, position, end):
     """An unsigned LEB128 number of at most 5 bytes, and the position after it."""
     value = 0
     for i in range(5):
@@ -54,12 +54,12 @@ def _read_varint(stream, position, end):  # noqa: ANN001, ANN202
 
 
 @njit(cache=True)
-def _unzigzag(value):  # noqa: ANN001, ANN202
+def _unzigzag(value):
     return (value >> 1) ^ -(value & 1)
 
 
 @njit(cache=True)
-def _decode_sequence(stream, out):  # noqa: ANN001, ANN202
+def _decode_sequence(stream, out):
     end = len(stream) - _SEQUENCE_TAIL_BYTES
     position = 1
     last = np.zeros(2, np.int64)  # two baselines: one for each of two interleaved runs
@@ -72,7 +72,7 @@ def _decode_sequence(stream, out):  # noqa: ANN001, ANN202
 
 
 @njit(cache=True)
-def _decode_triangles(stream, out):  # noqa: ANN001, ANN202
+def _decode_triangles(stream, out):
     # ---- State ------------------------------------------------------------------------------
     n_triangles = len(out) // 3
     end = len(stream) - _CODEAUX_BYTES
