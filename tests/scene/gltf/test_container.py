@@ -108,7 +108,10 @@ def test_gltf_1_names_the_tool_that_upgrades_it(tmp_path):
         read_document(write_gltf(tmp_path, document))
 
 
-@pytest.mark.parametrize("text", ["{", '{"asset": NaN}', "{" * 10**5, '{"asset": 3}', '{"a": "\ud800"}'])
+@pytest.mark.parametrize(
+    "text",
+    ["{", '{"asset": {"version": "2.0"}, "extras": NaN}', "{" * 10**5, '{"asset": 3}', '{"a": "\ud800"}'],
+)
 def test_malformed_json_is_an_input_error(tmp_path, text):
     path = tmp_path / "x.gltf"
     path.write_bytes(text.encode("utf-8", "surrogatepass"))
@@ -147,9 +150,17 @@ def test_remote_and_absolute_uris_are_refused(tmp_path, uri):
         read_document(write_gltf(tmp_path, triangle_json(uri=uri)))
 
 
-@pytest.mark.parametrize("uri", ["data:,", "data:;base64,@@@@", "data:;base64", "data:;base64,QUJD"])
-def test_damaged_data_uris_are_input_errors(tmp_path, uri):
-    with pytest.raises(InputError, match="/buffers/0"):
+@pytest.mark.parametrize(
+    ("uri", "message"),
+    [
+        ("data:,", "expected 36 bytes, found 0"),
+        ("data:;base64,QUJD", "expected 36 bytes, found 3"),
+        ("data:;base64,@@@@", "not base64"),
+        ("data:;base64", "no comma"),
+    ],
+)
+def test_damaged_data_uris_are_input_errors(tmp_path, uri, message):
+    with pytest.raises(InputError, match=f"/buffers/0.*{message}"):
         read_document(write_gltf(tmp_path, triangle_json(uri=uri)))
 
 

@@ -188,6 +188,11 @@ def test_specular_glossiness_keeps_diffuse_and_specular_reflectance(gltf):
     np.testing.assert_allclose(f0, [0.4, 0.5, 0.6], rtol=1e-3)
 
 
+def test_diffuse_reflectance_above_one_is_clamped(gltf):
+    found = material(gltf, extended(SPEC_GLOSS, diffuseFactor=[1.5, 0.2, 0.3, 1]))
+    assert found.base_color == (1.0, 0.2, 0.3, 1.0)
+
+
 def test_glossiness_in_alpha_becomes_roughness_in_green(gltf):
     add_texture(gltf, png((10, 20, 30, 200)))
     gltf.add("materials", extended(SPEC_GLOSS, specularGlossinessTexture={"index": 0}, glossinessFactor=0.5))

@@ -48,9 +48,8 @@ def _surface(view: JsonView, textures: Textures) -> dict[str, Any]:
 
 
 def _metallic_roughness(view: JsonView, textures: Textures) -> dict[str, Any]:
-    red, green, blue, alpha = view.numbers("baseColorFactor", (1.0, 1.0, 1.0, 1.0))
     return {
-        "base_color": (_unit(red), _unit(green), _unit(blue), _unit(alpha)),
+        "base_color": view.fractions("baseColorFactor", (1.0, 1.0, 1.0, 1.0)),
         "base_color_texture": textures.read(view, "baseColorTexture"),
         "metallic": view.fraction("metallicFactor", 1.0),
         "roughness": view.fraction("roughnessFactor", 1.0),
@@ -97,7 +96,3 @@ def _transmission(view: JsonView, textures: Textures) -> dict[str, Any]:
 def _rgb(view: JsonView, key: str, default: Rgb) -> Rgb:
     red, green, blue = view.numbers(key, default)
     return (max(red, 0.0), max(green, 0.0), max(blue, 0.0))
-
-
-def _unit(value: float) -> float:
-    return min(max(value, 0.0), 1.0)

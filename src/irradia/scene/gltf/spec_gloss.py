@@ -28,14 +28,14 @@ def read_spec_gloss(view: JsonView, textures: Textures, full_fresnel_ior: float)
     glossiness = view.fraction("glossinessFactor", 1.0)
     specular_glossiness = textures.read(view, "specularGlossinessTexture")
     return {
-        "base_color": view.numbers("diffuseFactor", (1.0, 1.0, 1.0, 1.0)),
+        "base_color": view.fractions("diffuseFactor", (1.0, 1.0, 1.0, 1.0)),
         "base_color_texture": textures.read(view, "diffuseTexture"),
         "metallic": 0.0,
         "roughness": 1.0 if specular_glossiness else 1.0 - glossiness,
         "metallic_roughness_texture": specular_glossiness
         and _roughness_texture(specular_glossiness, glossiness, textures),
         "ior": full_fresnel_ior,
-        "specular_color": view.numbers("specularFactor", (1.0, 1.0, 1.0)),
+        "specular_color": view.fractions("specularFactor", (1.0, 1.0, 1.0)),
         "specular_color_texture": specular_glossiness,
     }
 

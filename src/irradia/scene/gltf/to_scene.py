@@ -57,7 +57,7 @@ def document_to_scene(
         raise InputError(
             "this scene has no triangles to bake",
             where=document.name,
-            fix="Check that the default scene shows a mesh of triangles; " + "; ".join(notes.lines()),
+            fix=". ".join(("Check that the default scene shows a mesh of triangles", *notes.lines())),
         )
     return Scene(
         name=document.name,

@@ -129,6 +129,10 @@ class JsonView:
             )
         return tuple(_finite(value) for value in values)
 
+    def fractions(self, key: str, default: tuple[float, ...]) -> tuple[float, ...]:
+        """As many numbers as ``default`` has, each clamped to [0, 1]."""
+        return tuple(min(max(value, 0.0), 1.0) for value in self.numbers(key, default))
+
     def extension(self, name: str) -> JsonView | None:
         """This object's extension ``name``, or None."""
         extensions = self.object("extensions")
