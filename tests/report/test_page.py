@@ -73,7 +73,7 @@ def data() -> ReportData:
             ),
         ),
         lightmap=LightmapSummary(rng.random((2, 16, 16, 3), np.float32), coverage, 24.3, 7),
-        performance=Performance({"trace": 30.0, "write": 10.0}, 12.3e6, 31e6, 3 << 30, {"Epochs": 14}),
+        performance=Performance({"trace": 30.0, "write": 10.0}, 33.3, 12.3e6, 31e6, 3 << 30, {"Epochs": 14}),
         provenance={"irradia": "0.1.0", "seed": 5, "config": {"samples": 64}},
         convergence=Convergence((1, 2, 4), (0.96, 1.01, 1.0)),
         notes=("Sun and sky were added.",),

@@ -80,9 +80,19 @@ def bake_record(
         "stats": stats,
         "stage_s": {name: round(seconds, 4) for name, seconds in progress.seconds.items()},
         "peak_memory_bytes": peak_memory_bytes(),
-        "against_reference": baked.view.comparison.to_json() if baked.view else None,
+        "against_reference": _against_reference(baked),
         "notes": [*baked.scene.notes, *baked.layout.notes],
         "provenance": origin,
+    }
+
+
+def _against_reference(baked: Baked) -> dict[str, Any] | None:
+    if baked.view is None:
+        return None
+    return {
+        "camera": baked.view.camera.name,
+        **baked.view.comparison.to_json(),
+        "relmse_noise_free": baked.view.relmse_noise_free,
     }
 
 

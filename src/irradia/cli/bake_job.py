@@ -112,7 +112,7 @@ def _bake(job: BakeJob, progress: Progress) -> Baked:
     scene = open_scene(job.scene, job.load, job.light, progress)
     layout = layout_lightmap(scene, job.layout, progress)
     for note in layout.notes:
-        progress.say(f"note: {note}")
+        progress.say(note)
     result = bake_lightmap(scene, layout, job.bake, progress)
     if job.views is None:
         return Baked(scene, layout, result, None)

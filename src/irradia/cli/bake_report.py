@@ -10,6 +10,9 @@ from irradia.cli.bake_views import View, ViewOptions
 from irradia.report import Comparison, Convergence, LightmapSummary, Performance, ReportData
 from irradia.scene.types import Scene
 
+# Stages that prove the bake rather than make it.
+PROOF_STAGES = ("scene for rendering", "render from the bake", "render the reference", "comparison")
+
 
 def report_data(job: BakeJob, baked: Baked, record: dict[str, Any]) -> ReportData:
     """Everything that the report shows."""
@@ -27,7 +30,7 @@ def report_data(job: BakeJob, baked: Baked, record: dict[str, Any]) -> ReportDat
         performance=_performance(record),
         provenance=record["provenance"],
         convergence=convergence(record["stats"]["epochs"]),
-        notes=tuple(record["notes"]),
+        notes=baked.scene.notes,
     )
 
 
@@ -53,6 +56,7 @@ def _comparison(view: View, options: ViewOptions) -> Comparison:
             "flip": found.flip,
             "psnr": found.psnr_db,
             "relmse": found.relmse,
+            "relmse_noise_free": view.relmse_noise_free,
             "smape": found.smape,
             "mean_ratio": found.mean_ratio,
             "p95": found.relative_error_p95,
@@ -66,6 +70,7 @@ def _performance(record: dict[str, Any]) -> Performance:
     stats = record["stats"]
     return Performance(
         stage_s=record["stage_s"],
+        bake_s=sum(s for name, s in record["stage_s"].items() if name not in PROOF_STAGES),
         samples_per_second=stats["samples_per_second"],
         rays_per_second=stats.get("rays_per_second"),
         peak_memory_bytes=record["peak_memory_bytes"],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -9,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.core.progress import Progress
+from irradia.core.rng import Seed
 from irradia.scene.types import Camera, Scene
 
 if TYPE_CHECKING:
@@ -23,16 +25,15 @@ class ViewOptions:
     """The pictures of a report.
 
     Attributes:
-        width_px, height_px: Their size.
-        reference_spp: Samples per pixel of the diffuse reference.
+        n_pixels: About how many each picture has; its shape is the camera's.
+        reference_spp: Samples per pixel of the diffuse reference, two halves together.
         full_spp: Samples per pixel with full materials, which is only looked at.
         baked_spp: Samples per pixel of the baked view: enough for smooth edges.
         seed: Root of all random numbers.
         fast_rays: Gives up watertight intersection for speed.
     """
 
-    width_px: int = 960
-    height_px: int = 540
+    n_pixels: int = 960 * 540
     reference_spp: int = 256
     full_spp: int = 64
     baked_spp: int = 32
@@ -48,6 +49,7 @@ class View:
         baked, reference: Diffuse transport; these are compared.
         full: Full materials, to look at.
         flip: (H, W) error of ``baked``.
+        relmse_noise_free: relMSE without what the reference's own noise adds to it.
     """
 
     camera: Camera
@@ -56,25 +58,43 @@ class View:
     full: F32
     flip: F32
     comparison: Comparison
+    relmse_noise_free: float
 
 
 def render_view(scene: Scene, lightmap: BakedLight, options: ViewOptions, progress: Progress) -> View:
-    """Renders through the scene's first camera, or one that frames it."""
-    from irradia.metrics import compare, flip
+    """Renders through the scene's first camera, or one that frames it.
+
+    The reference is made in two independent halves, so that its noise can be told from error.
+    """
+    from irradia.metrics import compare, flip, relmse_without_reference_noise
     from irradia.scene.framing import camera_from_spec
     from irradia.transport.render import RenderOptions, Transport, render
 
-    camera = camera_from_spec(scene, None, options.width_px / options.height_px)
+    camera = camera_from_spec(scene, None)
+    width, height = picture_size(camera.aspect, options.n_pixels)
 
-    def picture(spp: int, transport: Transport, shown: BakedLight | None = None) -> F32:
-        how = RenderOptions(
-            options.width_px, options.height_px, spp, transport, options.seed, options.fast_rays
-        )
+    def picture(name: str, spp: int, transport: Transport, shown: BakedLight | None = None) -> F32:
+        seed = Seed(options.seed).child(name).uint32()
+        how = RenderOptions(width, height, spp, transport, seed, options.fast_rays)
         return render(scene, camera, how, lightmap=shown, progress=progress)
 
-    baked = picture(options.baked_spp, "diffuse", lightmap)
-    reference = picture(options.reference_spp, "diffuse")
-    full = picture(options.full_spp, "full")
+    baked = picture("baked", options.baked_spp, "diffuse", lightmap)
+    halves = [picture(f"reference-{i}", max(options.reference_spp // 2, 1), "diffuse") for i in range(2)]
+    full = picture("full", options.full_spp, "full")
     with progress.stage("comparison"):
-        error = flip(baked, reference).error
-        return View(camera, baked, reference, full, error, compare(baked, reference))
+        reference = 0.5 * (halves[0] + halves[1])
+        return View(
+            camera,
+            baked,
+            reference,
+            full,
+            flip(baked, reference).error,
+            compare(baked, reference),
+            relmse_without_reference_noise(baked, halves[0], halves[1]),
+        )
+
+
+def picture_size(aspect: float, n_pixels: int) -> tuple[int, int]:
+    """Width and height of about ``n_pixels`` in this shape, each even and at least 2."""
+    width = math.sqrt(n_pixels * aspect)
+    return max(2, 2 * round(width / 2)), max(2, 2 * round(width / aspect / 2))

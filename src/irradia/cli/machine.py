@@ -33,6 +33,7 @@ PACKAGES = (
     "pyoidn",
     "scipy",
     "xatlas",
+    "zstandard",
 )
 CHROMIUM_NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 

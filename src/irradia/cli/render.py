@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,12 @@ from irradia.cli.output import finish
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from irradia.cli.lighting import LightOptions
+    from irradia.core.progress import Progress
+    from irradia.scene.load import LoadOptions
+    from irradia.scene.types import Scene
+    from irradia.transport.render import BakedLight
 
 FORMATS = (".exr", ".hdr", ".png")
 MAX_EDGE_PX = 16384
@@ -99,7 +106,7 @@ def write_image(out: Path, image: NDArray[np.float32], exposure_ev: float | None
     return exposure
 
 
-def _render(scene_spec: str, baked: bool, choices: dict[str, Any], progress: Any) -> NDArray[np.float32]:
+def _render(scene_spec: str, baked: bool, choices: dict[str, Any], progress: Progress) -> NDArray[np.float32]:
     from irradia.cli.bake_job import open_scene
     from irradia.scene.framing import camera_from_spec, save_camera
     from irradia.scene.load import LoadOptions
@@ -109,9 +116,7 @@ def _render(scene_spec: str, baked: bool, choices: dict[str, Any], progress: Any
     light = options.light_options(**{name: choices[name] for name in options.LIGHT_NAMES})
     load = LoadOptions(pose_time=choices["pose_time"], variant=choices["variant"])
     if baked:
-        from irradia.cli.baked_scene import open_baked
-
-        scene, lightmap = open_baked(scene_spec)
+        scene, lightmap = _open_baked(scene_spec, load, light)
     else:
         scene, lightmap = open_scene(scene_spec, load, light, progress), None
     camera = camera_from_spec(scene, choices["camera"], choices["width"] / choices["height"])
@@ -128,3 +133,14 @@ def _render(scene_spec: str, baked: bool, choices: dict[str, Any], progress: Any
         fast_rays=choices["fast_rays"],
     )
     return render(scene, camera, how, lightmap=lightmap, progress=progress)
+
+
+def _open_baked(spec: str, load: LoadOptions, light: LightOptions) -> tuple[Scene, BakedLight]:
+    """A baked .glb; the surroundings are seen behind it, but light nothing that has a lightmap."""
+    from irradia.cli.lighting import light_scene
+    from irradia.export.read_baked import read_baked
+    from irradia.transport.render import BakedLight
+
+    baked = read_baked(spec, load)
+    surroundings = replace(light, default_light=False)
+    return light_scene(baked.scene, surroundings), BakedLight(baked.layout, baked.pages)

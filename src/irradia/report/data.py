@@ -68,6 +68,7 @@ class Performance:
 
     Attributes:
         stage_s: Wall seconds by stage, in order.
+        bake_s: What of it made the bake; the rest went into its references.
         samples_per_second: Gather rays with their share of next-event rays, over all epochs.
         rays_per_second: Rays of either kind; None where they weren't counted.
         peak_memory_bytes: Highest resident size of the process; None where the system doesn't tell.
@@ -75,6 +76,7 @@ class Performance:
     """
 
     stage_s: Mapping[str, float]
+    bake_s: float
     samples_per_second: float
     rays_per_second: float | None = None
     peak_memory_bytes: int | None = None

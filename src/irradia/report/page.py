@@ -21,7 +21,8 @@ from irradia.report.pictures import data_uri, display, error_colours, error_grad
 _SCORES = {
     "flip": ("HDR-FLIP, mean", "0 is equal; under 0.05 is hard to see side by side"),
     "psnr": ("PSNR", "decibels, after tone mapping; more is better"),
-    "relmse": ("relMSE", "0 is equal"),
+    "relmse": ("relMSE", "0 is equal; the reference's own noise counts"),
+    "relmse_noise_free": ("relMSE, noise of the reference removed", "0 is equal"),
     "smape": ("SMAPE", "0 is equal, 2 is the worst"),
     "mean_ratio": ("Mean ratio", "1 is equal brightness"),
     "p95": ("95th percentile of the relative error", "0 is equal"),
@@ -55,11 +56,10 @@ def _asset(name: str) -> str:
 
 
 def _subtitle(data: ReportData) -> str:
-    total_s = sum(data.performance.stage_s.values())
     parts = [
         f"{text.count(data.lightmap.n_texels)} texels",
         text.rate(data.performance.samples_per_second, "samples/s"),
-        text.duration(total_s),
+        f"baked in {text.duration(data.performance.bake_s)}",
     ]
     return " · ".join(parts)
 
