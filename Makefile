@@ -1,6 +1,10 @@
 # The two that a stranger needs: `make demo` and `make test`. Both do all set-up themselves.
 
-PYTHON ?= $(shell command -v python3.13 || command -v python3.12 || command -v python3.11 || command -v python3)
+# The first Python that runs and is new enough; set-up says what to do where there is none.
+ifndef PYTHON
+PYTHON := $(shell for p in python3 python3.13 python3.12 python3.11; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && exit; done; echo python3)
+endif
 BIN := .venv/bin
 OUT ?= out/demo
 PYTEST_ARGS ?=
