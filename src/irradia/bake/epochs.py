@@ -19,11 +19,9 @@ from numpy.typing import NDArray
 from irradia.core import Progress, Seed
 
 if TYPE_CHECKING:
-    from mitsuba import Color3f
-
     from irradia.core.progress import Stage
     from irradia.transport.path import LightCache
-    from irradia.transport.texel_light import TexelLight
+    from irradia.transport.texel_light import TexelColour, TexelLight
 
 _RAYS_PER_LAUNCH = 1 << 22
 _RAYS_TO_SETTLE = 1 << 18  # an epoch of fewer settles on a mean of its own, and bounces amplify the error
@@ -63,11 +61,11 @@ class EpochPlan:
 
 def run_epochs(
     light: TexelLight, plan: EpochPlan, n_direct: int, seed: Seed, progress: Progress
-) -> tuple[NDArray[np.float32], NDArray[np.float32], list[Epoch], int]:
+) -> tuple[NDArray[np.float32], list[Epoch], int]:
     """Traces a whole bake.
 
     Returns:
-        E/π (N, 3), back-face share (N,), the epochs, and kernel launches per pass.
+        E/π (N, 3), the epochs, and kernel launches per pass.
     """
     from irradia.transport.texel_light import count_launches
 
@@ -105,9 +103,7 @@ def run_epochs(
             epochs.append(Epoch(size, light.mean(estimate)))
             if plan.cached and number + 1 < len(plan.sizes):
                 cache = light.cache(estimate, reflectance)
-    host = light.to_host(sums.mean + direct.mean)
-    back_share = light.to_host(sums.backs) / max(sums.count, 1)
-    return host, back_share.astype(np.float32), epochs, launches
+    return light.to_host(sums.mean + direct.mean), epochs, launches
 
 
 def _rays_per_pass(n_texels: int) -> int:

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 Integrator = Literal["cached", "path"]
 _MAX_SAMPLES = 1 << 20
-_MOSTLY = 0.5  # a texel is invalid when more of its rays than this meet back faces
 
 
 @dataclass(frozen=True)
@@ -65,21 +64,22 @@ class LightmapResult:
     Attributes:
         texels: Which texels there are.
         irradiance_over_pi: (N, 3) as traced: linear, not denoised.
-        back_share: (N,) share of each texel's rays that met a back face first.
+        hidden_share: (N,) share of each texel's sub-samples that lie inside something; the light
+            is that of the others.
         pages: (P, H, W, 3) finished: denoised where asked, dilated.
         stats: What the bake did and how fast; plain values, fit for JSON.
     """
 
     texels: TexelSet
     irradiance_over_pi: NDArray[np.float32]
-    back_share: NDArray[np.float32]
+    hidden_share: NDArray[np.float32]
     pages: NDArray[np.float32]
     stats: dict[str, Any]
 
     @property
     def valid(self) -> NDArray[np.bool_]:
         """(N,) whether the texel sees the scene rather than the inside of a wall."""
-        return self.back_share <= _MOSTLY
+        return self.hidden_share < 1.0
 
     @property
     def raw_pages(self) -> NDArray[np.float32]:
@@ -107,14 +107,16 @@ def bake_lightmap(
         mesh, texels = cover(scene, layout)
     with progress.stage("ray tracing set-up"):
         light = prepare(scene, mesh, layout, texels, options)
+    with progress.stage("hidden texels"):
+        hidden_share = light.drop_hidden_subsamples()
     start = time.perf_counter()
-    estimate, back_share, epochs, launches = _trace(light, options, progress)
+    estimate, epochs, launches = _trace(light, options, progress)
     seconds = time.perf_counter() - start
     stats = _stats(light, options, epochs, launches, seconds)
-    valid = back_share <= _MOSTLY
+    valid = hidden_share < 1.0
     stats["valid_share"] = float(valid.mean())
     pages = finish(texels, estimate, valid, denoise=options.denoise, progress=progress)
-    return LightmapResult(texels, estimate, back_share, pages, stats)
+    return LightmapResult(texels, estimate, hidden_share, pages, stats)
 
 
 def cover(scene: Scene, layout: LightmapLayout) -> tuple[MergedMesh, TexelSet]:
@@ -144,8 +146,8 @@ def prepare(
 
 def _trace(
     light: TexelLight, options: BakeOptions, progress: Progress
-) -> tuple[NDArray[np.float32], NDArray[np.float32], list[Epoch], int]:
-    """E/π and back-face share per texel, with a record of what was traced."""
+) -> tuple[NDArray[np.float32], list[Epoch], int]:
+    """E/π per texel, with a record of what was traced."""
     plan = EpochPlan.for_options(options.samples, cached=options.integrator == "cached")
     return run_epochs(light, plan, options.n_direct, Seed(options.seed).child("bake"), progress)
 

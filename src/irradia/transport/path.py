@@ -49,7 +49,6 @@ class Segment:
         travelled: Distance since then, through what let it pass.
         bounces, segments: Counters.
         sampler: Its random numbers.
-        met_back: Whether the first surface that stopped it was seen from behind.
         active: Whether it goes on.
     """
 
@@ -63,7 +62,6 @@ class Segment:
     bounces: mi.UInt32
     segments: mi.UInt32
     sampler: Sampler
-    met_back: mi.Bool
     active: mi.Bool
 
 
@@ -88,7 +86,6 @@ def start(
         bounces=zero,
         segments=mi.UInt32(0),
         sampler=Sampler(mi.UInt32(sampler.index), mi.UInt32(sampler.seed)),
-        met_back=mi.Bool(False),
         active=mi.Bool(active),
     )
 
@@ -152,7 +149,6 @@ def _advance(world: World, ray: Segment, cache: LightCache | None, cull_backs: b
 
     # ---- a back reflects nothing; a mapped front may know its light ----
     blocked = stops & back & one_sided
-    ray.met_back |= blocked & (ray.bounces == 0)
     ends = blocked | (stops & ((record.flags & UNLIT) != 0))
     if cache is not None:
         known = stops & ~ends & ~back & ((record.flags & HAS_TEXEL) != 0)

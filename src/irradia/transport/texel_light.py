@@ -16,9 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.transport.backend import dr, mi
-from irradia.transport.geometry import Hit, SurfacePoint
+from irradia.transport.geometry import Hit
+from irradia.transport.hidden import drop_hidden
 from irradia.transport.path import LightCache, direct, start, trace
 from irradia.transport.sampling import Sampler, cosine_hemisphere, hash_u32, to_world
+from irradia.transport.subsamples import Subsamples
 from irradia.transport.world import TriangleRecord, World
 
 _RAYS_PER_SUBSAMPLE = 8
@@ -46,12 +48,10 @@ class TexelSums:
 
     Attributes:
         light: (N) sum of weighted radiance.
-        backs: (N) rays that a back face stopped first.
         count: Rays drawn per texel so far.
     """
 
     light: mi.Color3f
-    backs: mi.Float
     count: int
 
     @property
@@ -82,10 +82,9 @@ class TexelLight:
     ) -> None:
         self.world = world
         self._n_pages = int(pixel[-1]) // (world.page_width * world.page_height) + 1 if len(pixel) else 1
-        self.n_texels, self._n_subsamples = triangle.shape
+        self.n_texels = len(pixel)
+        self._subsamples = Subsamples(triangle, barycentric)
         self._pixel = mi.UInt32(pixel)
-        self._triangle = mi.UInt32(np.ascontiguousarray(triangle.T).ravel())
-        self._bary = [mi.Float(np.ascontiguousarray(barycentric[..., i].T).ravel()) for i in (0, 1)]
         self._nee_ratio = nee_ratio
 
     def warm_up(self, *, cached: bool) -> None:
@@ -102,14 +101,11 @@ class TexelLight:
 
     def empty_sums(self) -> TexelSums:
         """No rays yet."""
-        return TexelSums(dr.zeros(mi.Color3f, self.n_texels), dr.zeros(mi.Float, self.n_texels), 0)
+        return TexelSums(dr.zeros(mi.Color3f, self.n_texels), 0)
 
-    def _points(self, subsample: mi.UInt32) -> tuple[mi.UInt32, mi.Point2f, SurfacePoint]:
-        """Every texel's surface point at one sub-sample."""
-        index = subsample * self.n_texels + dr.arange(mi.UInt32, self.n_texels)
-        triangle = dr.gather(mi.UInt32, self._triangle, index)
-        bary = mi.Point2f(*[dr.gather(mi.Float, b, index) for b in self._bary])
-        return triangle, bary, self.world.point(triangle, bary, mi.Bool(True))
+    def drop_hidden_subsamples(self) -> NDArray[np.float32]:
+        """See :func:`irradia.transport.hidden.drop_hidden`."""
+        return drop_hidden(self.world, self._subsamples)
 
     def _texel_seed(self, seed: int) -> mi.UInt32:
         return hash_u32(self._pixel ^ hash_u32(dr.opaque(mi.UInt32, seed)))
@@ -117,8 +113,9 @@ class TexelLight:
     def reflectance(self) -> mi.Color3f:
         """Mean ρ over each texel's footprint, of the light that stops there."""
         rho, stops = dr.zeros(mi.Color3f, self.n_texels), dr.zeros(mi.Float, self.n_texels)
-        for subsample in range(self._n_subsamples):
-            triangle, bary, _ = self._points(dr.opaque(mi.UInt32, subsample))
+        texel = dr.arange(mi.UInt32, self.n_texels)
+        for subsample in range(self._subsamples.count):
+            triangle, bary = self._subsamples.fetch(texel, dr.opaque(mi.UInt32, subsample))
             looks = self.world.appearance(triangle, bary, mi.Bool(True))
             rho += looks.reflectance
             stops += 1.0 - looks.pass_probability
@@ -130,10 +127,10 @@ class TexelLight:
     ) -> TexelSums:
         """Adds ``n_rays`` cosine-distributed rays to every texel, moving on by a sub-sample every eight."""
         first, last = dr.opaque(mi.UInt32, sums.count), dr.opaque(mi.UInt32, sums.count + n_rays)
-        shift = dr.opaque(mi.UInt32, first_subsample % self._n_subsamples)
-        light, backs = self._gather_loop(self._texel_seed(seed), first, last, shift, cache)
-        result = TexelSums(sums.light + light, sums.backs + backs, sums.count + n_rays)
-        dr.eval(result.light, result.backs)
+        shift = dr.opaque(mi.UInt32, first_subsample % self._subsamples.count)
+        light = self._gather_loop(self._texel_seed(seed), first, last, shift, cache)
+        result = TexelSums(sums.light + light, sums.count + n_rays)
+        dr.eval(result.light)
         return result
 
     @dr.syntax
@@ -144,14 +141,15 @@ class TexelLight:
         last: mi.UInt32,
         shift: mi.UInt32,
         cache: LightCache | None,
-    ) -> tuple[mi.Color3f, mi.Float]:
+    ) -> mi.Color3f:
         """Rays ``first`` to ``last``: from each sub-sample in turn, eight."""
-        light, backs = mi.Color3f(0.0), mi.Float(0.0)
+        texel = dr.arange(mi.UInt32, self.n_texels)
+        light = mi.Color3f(0.0)
         ratio = dr.opaque(mi.Float, self._nee_ratio)
         k = mi.UInt32(first)
         while k < last:
             block = k // _RAYS_PER_SUBSAMPLE
-            _, _, point = self._points((block + shift) % self._n_subsamples)
+            point = self._subsamples.point(self.world, texel, (block + shift) % self._subsamples.count)
             block_end = dr.minimum(last, (block + 1) * _RAYS_PER_SUBSAMPLE)
             while k < block_end:
                 sampler = Sampler(mi.UInt32(k), mi.UInt32(texel_seed))
@@ -159,29 +157,28 @@ class TexelLight:
                 direction = to_world(point.ns, local)
                 above = (dr.dot(direction, point.ng) > 0.0) & (local.z > 0.0)
                 ray = start(point.origin, direction, local.z * (1.0 / math.pi), ratio, sampler, above)
-                ray = trace(self.world, ray, cache)
-                light += ray.radiance
-                backs += dr.select(ray.met_back, 1.0, 0.0)
+                light += trace(self.world, ray, cache).radiance
                 k += 1
-        return light, backs
+        return light
 
     def direct(self, sums: TexelSums, n_samples: int, seed: int) -> TexelSums:
         """Adds next-event samples to every texel, sub-samples taken in turn."""
         if not self.world.lights.any:
-            return TexelSums(sums.light, sums.backs, sums.count + n_samples)
+            return TexelSums(sums.light, sums.count + n_samples)
         first, last = dr.opaque(mi.UInt32, sums.count), dr.opaque(mi.UInt32, sums.count + n_samples)
         ratio = dr.opaque(mi.Float, self._nee_ratio)
         light = self._direct_loop(self._texel_seed(seed), first, last, ratio)
-        result = TexelSums(sums.light + light, sums.backs, sums.count + n_samples)
+        result = TexelSums(sums.light + light, sums.count + n_samples)
         dr.eval(result.light)
         return result
 
     @dr.syntax
     def _direct_loop(self, texel_seed, first, last, ratio):
+        texel = dr.arange(mi.UInt32, self.n_texels)
         light = mi.Color3f(0.0)
         k = mi.UInt32(first)
         while k < last:
-            _, _, point = self._points(k % self._n_subsamples)
+            point = self._subsamples.point(self.world, texel, k % self._subsamples.count)
             sampler = Sampler(mi.UInt32(k), mi.UInt32(texel_seed))
             light += direct(self.world, point, sampler, ratio, mi.Bool(True))
             k += 1
@@ -203,8 +200,8 @@ class TexelLight:
         """Mean over texels and channels: the one number that goes back to the host."""
         return float(np.mean(self.to_host(irradiance_over_pi), dtype=np.float64))
 
-    def to_host(self, value: mi.Color3f | mi.Float) -> NDArray[np.float32]:
-        """(N, 3) or (N,) array."""
+    def to_host(self, value: mi.Color3f) -> NDArray[np.float32]:
+        """(N, 3) array."""
         return np.ascontiguousarray(np.array(value).T)
 
 

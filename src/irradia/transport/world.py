@@ -133,6 +133,13 @@ class World:
             o = dr.select(active, beyond, o)
         return result
 
+    def meets_back(self, origin: mi.Point3f, direction: mi.Vector3f, active: mi.Bool) -> mi.Bool:
+        """Whether the nearest surface is an opaque, single-sided one seen from behind."""
+        hit = self.geometry.intersect(origin, direction, active)
+        record = self.record(hit.triangle, hit.bary, hit.valid)
+        solid = (record.flags & (DOUBLE_SIDED | FILTERS)) == 0
+        return hit.valid & solid & (dr.dot(record.ng, direction) > 0.0)
+
     def point(
         self, triangle: mi.UInt32, bary: mi.Point2f, active: mi.Bool, back: mi.Bool | None = None
     ) -> SurfacePoint:
