@@ -113,6 +113,24 @@ class EnvironmentLight:
         texel = dr.gather(mi.Vector4f, self._texels, mi.UInt32(y * self._width + x), active)
         return mi.Color3f(texel.x, texel.y, texel.z), texel.w
 
+    def backdrop(self, direction: mi.Vector3f, active: mi.Bool) -> mi.Color3f:
+        """Radiance filtered between pixels, for rays straight from a camera."""
+        x = (dr.atan2(direction.x, -direction.z) * (0.5 / math.pi) + 0.5) * self._width - 0.5
+        y = dr.safe_acos(direction.y) * (self._height / math.pi) - 0.5
+        x0, y0 = dr.floor(x), dr.floor(y)
+        total = mi.Color3f(0.0)
+        for j, wy in ((0.0, 1.0 - (y - y0)), (1.0, y - y0)):
+            for i, wx in ((0.0, 1.0 - (x - x0)), (1.0, x - x0)):
+                row = dr.clip(y0 + j, 0.0, self._height - 1.0)
+                column = x0 + i
+                column = dr.select(
+                    column < 0.0, self._width - 1.0, dr.select(column < self._width, column, 0.0)
+                )
+                index = mi.UInt32(row) * self._width + mi.UInt32(column)
+                texel = dr.gather(mi.Vector4f, self._texels, index, active)
+                total += mi.Color3f(texel.x, texel.y, texel.z) * (wx * wy)
+        return total
+
     def sample(self, u: mi.Point2f, active: mi.Bool) -> tuple[mi.Vector3f, mi.Color3f, mi.Float]:
         """A direction, its radiance and its density."""
         index, fresh = self._alias.sample(u.x, active)

@@ -117,6 +117,9 @@ def _advance(world: World, ray: Segment, cache: LightCache | None, cull_backs: b
     # ---- out of the scene ----
     missed = ray.active & ~hit.valid
     sky, sky_pdf = world.lights.environment_radiance(ray.direction, missed)
+    if cull_backs and world.lights.environment is not None:
+        first = missed & (ray.bounces == 0)
+        sky = dr.select(first, world.lights.environment.backdrop(ray.direction, first), sky)
     ray.radiance += dr.select(missed, ray.throughput * sky * _ray_weight(ray, sky_pdf), 0.0)
     active = ray.active & hit.valid
 
