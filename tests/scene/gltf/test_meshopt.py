@@ -79,3 +79,11 @@ def test_contradictory_parameters_are_input_errors(changes):
     case = {"mode": "ATTRIBUTES", "byteStride": 12, "count": 3}
     with pytest.raises(InputError, match="/bufferViews/0"):
         decode(case, bytes([0xA0]) + bytes(64), **changes)
+
+
+def test_explicit_triangle_of_new_vertices_starts_the_numbering_again():
+    """Streams that were joined do so; the encoder behind the other cases never does."""
+    codes, extra, table = bytes([0xF0, 0xFE]), bytes([0x00]), bytes(16)
+    stream = bytes([0xE1]) + codes + extra + table
+    decoded = decode({"mode": "TRIANGLES", "byteStride": 2, "count": 6}, stream)
+    assert np.frombuffer(decoded, "<u2").tolist() == [0, 1, 2, 0, 1, 2]
