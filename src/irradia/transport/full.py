@@ -100,10 +100,10 @@ def _mesh(mesh: MergedMesh, triangles: NDArray[np.intp], material: Material, sce
     )
     params = mi.traverse(result)
     texcoord = material.base_color_texture.texcoord if material.base_color_texture else 0
-    uv = mesh.texcoords[used, min(texcoord, 1)] * [1, -1] + [0, 1]  # Mitsuba's v grows upward
+    uv = mesh.texcoords[used, min(texcoord, 1)]
     params["vertex_positions"] = mi.Float(mesh.positions[used].ravel())
     params["vertex_normals"] = mi.Float(mesh.normals[used].ravel())
-    params["vertex_texcoords"] = mi.Float(uv.astype(np.float32).ravel())
+    params["vertex_texcoords"] = mi.Float(np.ascontiguousarray(uv).ravel())
     params["faces"] = mi.UInt32(faces.astype(np.uint32).ravel())
     params.update()
     return result
@@ -173,8 +173,7 @@ def _bitmap(scene: Scene, texture: TextureRef, pixels: NDArray | None, *, raw: b
     if pixels is None:
         pixels = scene.images[texture.image].pixels[..., :3] / np.float32(255)
     (a, b, c), (d, e, f) = texture.uv_from_texcoord
-    # In Mitsuba's upward v: v_m = 1 − v, on both sides of the transform.
-    matrix = [[a, -b, b + c], [-d, e, 1.0 - e - f], [0.0, 0.0, 1.0]]
+    matrix = [[a, b, c], [d, e, f], [0.0, 0.0, 1.0]]
     return {
         "type": "bitmap",
         "bitmap": mi.Bitmap(np.ascontiguousarray(pixels, np.float32)),
