@@ -1,0 +1,173 @@
+"""``scene.baked.glb``: the scene as it came, with its lightmap inside."""
+
+from __future__ import annotations
+
+import copy
+import json as json_text
+import struct
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+import irradia
+from irradia.core.errors import InternalError
+from irradia.core.files import write_atomic
+from irradia.export import lighting_extension
+from irradia.export.bindings import bind_nodes
+from irradia.export.instances import GPU_INSTANCING, write_out_gpu_instances
+from irradia.export.lighting_extension import InstanceTables, bind_node
+from irradia.export.meshes import MeshVersions, freed_accessors, freed_materials, primitive_texcoord
+from irradia.export.moz_lightmap import MozLightmaps
+from irradia.export.primitives import DRACO, MOZ_LIGHTMAP, PrimitiveWriter
+from irradia.export.slots import Slots
+from irradia.formats.ktx2 import Encoding
+from irradia.scene.gltf.accessors import Accessors
+from irradia.scene.gltf.document import GltfDocument, Json
+from irradia.scene.layout import LightmapLayout
+from irradia.scene.types import Scene
+
+_COMPRESSION = (DRACO, "EXT_meshopt_compression", "KHR_meshopt_compression")
+_SIGNATURES = ((b"\x89PNG", "image/png"), (b"\xff\xd8", "image/jpeg"), (b"RIFF", "image/webp"))
+_JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
+
+
+def write_baked_glb(
+    path: Path | str,
+    scene: Scene,
+    layout: LightmapLayout,
+    pages_irradiance_over_pi: NDArray[np.float32],
+    *,
+    compatible: bool = False,
+    encoding: Encoding = "rgb9e5",
+) -> None:
+    """Writes the scene's document with its lightmap, whole or not at all.
+
+    Everything that the bake didn't touch keeps its meaning and its index. Vertices are split where
+    the unwrap needs it, morph targets, joints and weights with them. Mesh compression is undone,
+    images stay as encoded. Punctual lights move into our extension: their light is in the map.
+
+    Args:
+        path: The .glb.
+        scene: As imported; its ``document`` is what is written.
+        layout: Where charts lie.
+        pages_irradiance_over_pi: (P, H, W, 3) linear E/π, dilated.
+        compatible: Writes meshes with several instances out, one mesh and node each, so that loaders
+            of MOZ_lightmap light them too. Otherwise such meshes stay shared, and only readers of
+            IRRADIA_lighting light them.
+        encoding: Of the HDR map.
+    """
+    data = baked_glb(scene, layout, pages_irradiance_over_pi, compatible=compatible, encoding=encoding)
+    with write_atomic(path) as stream:
+        stream.write(data)
+
+
+def baked_glb(
+    scene: Scene,
+    layout: LightmapLayout,
+    pages: NDArray[np.float32],
+    *,
+    compatible: bool = False,
+    encoding: Encoding = "rgb9e5",
+) -> bytes:
+    """The bytes of :func:`write_baked_glb`."""
+    if scene.document is None:
+        raise InternalError("the scene to export has no document")
+    export = _Export(scene, scene.document, layout, pages, compatible)
+    binary = export.run(encoding)
+    return _container(export.json, binary)
+
+
+class _Export:
+    """One document on its way out: ``json`` is the copy that is changed."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        document: GltfDocument,
+        layout: LightmapLayout,
+        pages: NDArray[np.float32],
+        compatible: bool,
+    ) -> None:
+        self.json: Json = copy.deepcopy(document.json)
+        self._scene = scene
+        self._layout = layout
+        self._pages = pages
+        self._document = document
+        self._accessors = Accessors(document)
+        nodes = (
+            write_out_gpu_instances(self.json, scene, self._accessors)
+            if compatible
+            else [instance.node_index for instance in scene.instances]
+        )
+        self._bound = bind_nodes(scene, layout, nodes, write_out=compatible)
+        free = freed_accessors(self.json, self._bound)
+        self._slots = Slots(self.json, self._accessors.read_view, free)
+
+    def run(self, encoding: Encoding) -> bytes:
+        """Changes the JSON and returns the binary chunk."""
+        moz = MozLightmaps(self.json, self._slots, self._pages, freed_materials(self.json, self._bound))
+        self._bind_nodes()
+        writer = PrimitiveWriter(self._document, self._accessors, self._slots)
+        MeshVersions(self.json, self._scene, self._layout, writer, moz).write(self._bound)
+        used = {MOZ_LIGHTMAP} if moz.used else set()
+        if self._bound:
+            lighting_extension.move_baked_lights(self.json)
+            lighting_extension.add_lightmap(self.json, self._slots, self._pages, encoding)
+            used.add(lighting_extension.NAME)
+        self._embed_images()
+        self._list_extensions(used)
+        self.json["asset"]["generator"] = f"Irradia {irradia.__version__}"
+        return self._slots.finish()
+
+    def _bind_nodes(self) -> None:
+        """Writes into nodes what their primitives read; meshes must still be the original ones."""
+        number = [instance.gpu_instance or 0 for instance in self._scene.instances]
+        for node_index, bindings in self._bound.items():
+            node = self.json["nodes"][node_index]
+            primitives = self.json["meshes"][node["mesh"]]["primitives"]
+            texcoords = {index: primitive_texcoord(self.json, primitives[index]) for index in bindings}
+            instancing = node.get("extensions", {}).get(GPU_INSTANCING)
+            tables = None
+            if instancing is not None:
+                count = len(self._accessors.read(next(iter(instancing["attributes"].values()))))
+                tables = InstanceTables(self._slots, count, number)
+            bind_node(node, bindings, texcoords, len(primitives), self._layout, tables)
+
+    def _embed_images(self) -> None:
+        for image, data in zip(self.json.get("images", []), self._document.images, strict=False):
+            if "uri" in image:
+                del image["uri"]
+                image.setdefault("mimeType", _mime_type(data))
+                self._slots.add_blob(data, lambda view, image=image: image.update(bufferView=view))
+
+    def _list_extensions(self, added: set[str]) -> None:
+        """Adds ours and removes those that nothing uses any more."""
+        gone = {*_COMPRESSION}
+        if GPU_INSTANCING not in _node_extensions(self.json):
+            gone.add(GPU_INSTANCING)
+        for key, extra in (("extensionsUsed", added), ("extensionsRequired", set())):
+            names = [name for name in self.json.get(key, []) if name not in gone]
+            names += sorted(extra - set(names))
+            self.json.pop(key, None)
+            if names:
+                self.json[key] = names
+
+
+def _node_extensions(json: Json) -> set[str]:
+    return {name for node in json.get("nodes", []) for name in node.get("extensions", {})}
+
+
+def _mime_type(data: bytes) -> str:
+    return next((kind for magic, kind in _SIGNATURES if data.startswith(magic)), "application/octet-stream")
+
+
+def _container(json: Json, binary: bytes) -> bytes:
+    """The two chunks of a .glb, padded to 4 bytes."""
+    text = json_text.dumps(json, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % 4)
+    binary += bytes(-len(binary) % 4)
+    chunks = struct.pack("<II", len(text), _JSON_CHUNK) + text
+    if binary:
+        chunks += struct.pack("<II", len(binary), _BINARY_CHUNK) + binary
+    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks

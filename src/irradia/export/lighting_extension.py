@@ -1,0 +1,133 @@
+"""IRRADIA_lighting: the true HDR lightmap and who reads which part of it; docs/IRRADIA_lighting/."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irradia.core.colour import automatic_exposure_ev
+from irradia.export.bindings import Binding, NodeBindings
+from irradia.export.slots import Slots
+from irradia.formats.ktx2 import Encoding, encode_ktx2
+from irradia.formats.lightmap import QUANTITY, power_of_two_scale
+from irradia.scene.gltf.document import Json
+from irradia.scene.layout import LightmapLayout
+
+NAME = "IRRADIA_lighting"
+VERSION = 1
+NO_PAGE = 0xFFFF
+_LIGHTS = "KHR_lights_punctual"
+
+
+def add_lightmap(json: Json, slots: Slots, pages: NDArray[np.float32], encoding: Encoding) -> None:
+    """Adds the map to the document's root.
+
+    Args:
+        json: The document being written.
+        slots: Where the texture's bytes go.
+        pages: (P, H, W, 3) E/π.
+        encoding: Of the texture's texels.
+    """
+    lit = pages[pages.max(axis=-1) > 0.0]
+    scale = power_of_two_scale(lit)
+    lightmap: Json = {
+        "quantity": QUANTITY,
+        "mimeType": "image/ktx2",
+        "bufferView": -1,
+        "encoding": encoding,
+        "scale": scale,
+        "exposure": round(automatic_exposure_ev(lit), 3),
+        "width": pages.shape[2],
+        "height": pages.shape[1],
+        "pages": pages.shape[0],
+    }
+    texture = encode_ktx2(pages / np.float32(scale), encoding, {"irradia:scale": repr(scale)})
+    slots.add_blob(texture, lambda view: lightmap.update(bufferView=view))
+    json.setdefault("extensions", {})[NAME] = {"version": VERSION, "lightmap": lightmap}
+
+
+@dataclass(frozen=True)
+class InstanceTables:
+    """Where an instanced node's per-instance data goes.
+
+    Attributes:
+        slots: Takes the accessors.
+        count: Instances that EXT_mesh_gpu_instancing places.
+        number: Place among them of each of the scene's instances.
+    """
+
+    slots: Slots
+    count: int
+    number: Sequence[int]
+
+
+def bind_node(
+    node: Json,
+    bindings: NodeBindings,
+    texcoords: dict[int, int],
+    n_primitives: int,
+    layout: LightmapLayout,
+    tables: InstanceTables | None,
+) -> None:
+    """Writes what a node's primitives read.
+
+    Args:
+        node: The node's JSON, which is changed.
+        bindings: By primitive of its mesh.
+        texcoords: The set that holds the uv, by primitive.
+        n_primitives: Of its mesh.
+        layout: Of the lightmap.
+        tables: For a node with EXT_mesh_gpu_instancing.
+    """
+    entries: list[Json] = []
+    for index in range(n_primitives):
+        binding = bindings.get(index)
+        if binding is None:
+            entries.append({})
+        elif tables is None or binding.final:
+            entries.append({"texCoord": texcoords[index], **_rectangle(layout, binding)})
+        else:
+            entries.append({"texCoord": texcoords[index], **_by_instance(layout, binding, tables)})
+    node.setdefault("extensions", {}).setdefault(NAME, {})["primitives"] = entries
+
+
+def move_baked_lights(json: Json) -> bool:
+    """Takes punctual lights off their nodes, because the map holds their light; returns whether any was.
+
+    The reference moves to ``bakedLight`` of our extension, the definitions stay where they are.
+    """
+    found = False
+    for node in json.get("nodes", []):
+        extensions = node.get("extensions", {})
+        light = extensions.pop(_LIGHTS, None)
+        if light is not None:
+            extensions.setdefault(NAME, {})["bakedLight"] = light["light"]
+            found = True
+    return found
+
+
+def _rectangle(layout: LightmapLayout, binding: Binding) -> Json:
+    """Page of a single instance; scale and offset where uv is still the rectangle's own."""
+    instance = binding.instances[0]
+    entry: Json = {"page": int(layout.page[instance])}
+    if not binding.final:
+        entry["scale"] = layout.scale[instance].tolist()
+        entry["offset"] = layout.offset[instance].tolist()
+    return entry
+
+
+def _by_instance(layout: LightmapLayout, binding: Binding, tables: InstanceTables) -> Json:
+    """Accessors with scale and offset of each GPU instance, and with pages where they differ."""
+    members = list(binding.instances)
+    rows = [tables.number[instance] for instance in members]
+    scale_offset = np.zeros((tables.count, 4), np.float32)
+    scale_offset[rows] = np.hstack([layout.scale[members], layout.offset[members]])
+    pages = np.full((tables.count, 1), NO_PAGE, np.uint16)
+    pages[rows, 0] = layout.page[members]
+    entry: Json = {"scaleOffsets": tables.slots.add_table(scale_offset, "VEC4")}
+    if (pages == pages[0]).all():
+        return entry | {"page": int(pages[0, 0])}
+    return entry | {"pages": tables.slots.add_table(pages, "SCALAR")}

@@ -1,0 +1,107 @@
+"""MOZ_lightmap: the lightmap as loaders without our extension read it, one 8-bit sRGB PNG per page.
+
+Hubs defined the extension when three.js still multiplied lightMap by π inside its shader, so that
+``texel · intensity`` is what a white surface shows: E/π. It is so written here: ``intensity`` is the
+scale alone, and a plugin for three.js r155 or newer, whose lightMap is E, sets
+``lightMapIntensity = intensity · π``.
+"""
+
+from __future__ import annotations
+
+import copy
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irradia.core.colour import srgb_from_linear
+from irradia.export.primitives import MOZ_LIGHTMAP
+from irradia.export.slots import Slots
+from irradia.formats.png import encode_png
+from irradia.scene.gltf.document import Json
+
+_LINEAR, _CLAMP = 9729, 33071
+_CLIPPED_PERCENTILE = 99.95
+_MAX_HEADROOM = 4.0
+
+
+def moz_scale(page: NDArray[np.float32]) -> float:
+    """The power of two that one 8-bit page divides by.
+
+    It covers the page's maximum; but where that is over 4 times the 99.95th percentile of lit texels
+    (a lamp's halo, a sunny sill), it covers the percentile and clips the rest: 8 bits have no codes
+    to spare for it, and everything else would band.
+    """
+    brightest = page.max(axis=-1)
+    brightest = brightest[brightest > 0.0]
+    if brightest.size == 0:
+        return 1.0
+    high = float(np.percentile(brightest, _CLIPPED_PERCENTILE))
+    top = float(brightest.max())
+    covered = top if top <= _MAX_HEADROOM * high else high
+    return 2.0 ** int(np.ceil(np.log2(covered)))
+
+
+class MozLightmaps:
+    """Adds pages as textures, and materials that read them, to ``json``, which is changed.
+
+    Args:
+        json: The document being written.
+        slots: Where image bytes go.
+        pages: (P, H, W, 3) E/π.
+        free_materials: Materials that nothing else uses: their first copy takes their place.
+    """
+
+    def __init__(
+        self, json: Json, slots: Slots, pages: NDArray[np.float32], free_materials: set[int]
+    ) -> None:
+        self._json = json
+        self._originals: list[Json] = copy.deepcopy(json.get("materials", []))
+        self._free = set(free_materials)
+        self._slots = slots
+        self._pages = pages
+        self._textures: dict[int, tuple[int, float]] = {}
+        self._materials: dict[tuple[int | None, int, int], int] = {}
+
+    def material(self, material: int | None, page: int, texcoord: int) -> int:
+        """A copy of a material (glTF's default, if None) with the page as its lightmap."""
+        key = (material, page, texcoord)
+        if key not in self._materials:
+            texture, intensity = self._texture(page)
+            clone: Json = {} if material is None else copy.deepcopy(self._originals[material])
+            clone.setdefault("extensions", {})[MOZ_LIGHTMAP] = {
+                "index": texture,
+                "texCoord": texcoord,
+                "intensity": intensity,
+            }
+            if material is not None and material in self._free:
+                self._free.remove(material)
+                self._json["materials"][material] = clone
+                self._materials[key] = material
+            else:
+                self._materials[key] = _append(self._json, "materials", clone)
+        return self._materials[key]
+
+    @property
+    def used(self) -> bool:
+        """Whether any material reads a page."""
+        return bool(self._materials)
+
+    def _texture(self, page: int) -> tuple[int, float]:
+        """Index of a page's texture, and its scale."""
+        if page not in self._textures:
+            pixels = self._pages[page]
+            scale = moz_scale(pixels)
+            coded = np.round(srgb_from_linear(pixels / np.float32(scale)) * 255.0).astype(np.uint8)
+            image: Json = {"name": f"lightmap {page}", "mimeType": "image/png", "bufferView": -1}
+            self._slots.add_blob(encode_png(coded), lambda view: image.update(bufferView=view))
+            source = _append(self._json, "images", image)
+            sampler = {"magFilter": _LINEAR, "minFilter": _LINEAR, "wrapS": _CLAMP, "wrapT": _CLAMP}
+            texture = {"source": source, "sampler": _append(self._json, "samplers", sampler)}
+            self._textures[page] = _append(self._json, "textures", texture), scale
+        return self._textures[page]
+
+
+def _append(json: Json, key: str, entry: Json) -> int:
+    table = json.setdefault(key, [])
+    table.append(entry)
+    return len(table) - 1
