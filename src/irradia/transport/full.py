@@ -113,19 +113,27 @@ def _bsdf(material: Material, scene: Scene) -> dict[str, Any]:
     """Principled, wrapped for normal map, both sides, and alpha or transmission as a mask."""
     if material.unlit:
         return {"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.0}}
-    bsdf: dict[str, Any] = {
-        "type": "principled",
-        "base_color": _colour(material.base_color[:3], material.base_color_texture, scene),
-        "metallic": _factor(material.metallic, material.metallic_roughness_texture, 2, scene),
-        "roughness": _factor(material.roughness, material.metallic_roughness_texture, 1, scene),
-        "specular": min(material.specular * 0.5, 1.0),
-    }
+    bsdf = _reflection(material, scene)
     if material.normal_texture is not None:
         bitmap = _bitmap(scene, material.normal_texture, None, raw=True)
         bsdf = {"type": "normalmap", "normalmap": bitmap, "nested": bsdf}
     bsdf = {"type": "twosided", "nested": bsdf}
     opacity = _opacity(material, scene)
     return bsdf if opacity is None else {"type": "mask", "opacity": opacity, "nested": bsdf}
+
+
+def _reflection(material: Material, scene: Scene) -> dict[str, Any]:
+    """Lambert's law where the material says so, else Disney's principled one."""
+    colour = _colour(material.base_color[:3], material.base_color_texture, scene)
+    if material.specular == 0.0 and material.metallic == 0.0:
+        return {"type": "diffuse", "reflectance": colour}
+    return {
+        "type": "principled",
+        "base_color": colour,
+        "metallic": _factor(material.metallic, material.metallic_roughness_texture, 2, scene),
+        "roughness": _factor(material.roughness, material.metallic_roughness_texture, 1, scene),
+        "specular": min(material.specular * 0.5, 1.0),
+    }
 
 
 def _opacity(material: Material, scene: Scene) -> Any:
