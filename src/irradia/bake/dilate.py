@@ -72,8 +72,9 @@ def _halve(image: F32, known: NDArray[np.bool_]) -> tuple[F32, NDArray[np.bool_]
     pad = ((0, height % 2), (0, width % 2))
     weight = np.pad(known, pad).astype(np.float32)
     weighted = np.pad(image, (*pad, (0, 0))) * weight[..., None]
-    total = sum(weighted[dy::2, dx::2] for dy in (0, 1) for dx in (0, 1))
-    count = sum(weight[dy::2, dx::2] for dy in (0, 1) for dx in (0, 1))
+    quarters = [(dy, dx) for dy in (0, 1) for dx in (0, 1)]
+    total = np.sum([weighted[dy::2, dx::2] for dy, dx in quarters], axis=0)
+    count = np.sum([weight[dy::2, dx::2] for dy, dx in quarters], axis=0)
     return total / np.maximum(count, 1)[..., None], count > 0
 
 

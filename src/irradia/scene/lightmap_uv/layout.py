@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from irradia.scene.layout import LightmapLayout, Unwrap
 from irradia.scene.lightmap_uv.density import Plan, make_plan
 from irradia.scene.lightmap_uv.options import LayoutOptions
 from irradia.scene.lightmap_uv.pack import Placement
+from irradia.scene.lightmap_uv.pieces import Piece
 from irradia.scene.lightmap_uv.receivers import Receiver, find_receivers
 from irradia.scene.lightmap_uv.unwrap import triangle_areas
 from irradia.scene.types import Scene
@@ -41,40 +42,45 @@ def layout_lightmap(scene: Scene, options: LayoutOptions, progress: Progress) ->
 
 
 def _assemble(scene: Scene, receivers: Sequence[Receiver], plan: Plan, notes: list[str]) -> LightmapLayout:
-    unwraps: list[Unwrap | None] = [None] * len(scene.primitives)
+    """Turns a plan in texels into unwraps and transforms in page uv."""
+    unwraps: dict[int, Unwrap] = {}
     page_of = np.full(len(scene.instances), -1, np.int32)
     scale = np.ones((len(scene.instances), 2), np.float32)
     offset = np.zeros((len(scene.instances), 2), np.float32)
-    reached, tiny = [], []
-    for page, (pieces, packed) in enumerate(zip(plan.pieces, plan.pages, strict=True)):
-        for piece, placement in zip(pieces, packed.placements, strict=True):
-            receiver = receivers[piece.receiver]
-            instance = receiver.instances[piece.slot]
-            page_of[instance] = page
-            if receiver.loose:
-                unwraps[receiver.primitive] = _loose_unwrap(receiver, placement, plan.edge_px)
-            else:
-                block = plan.blocks[piece.receiver]
-                unwraps[receiver.primitive] = unwraps[receiver.primitive] or _unwrap(receiver, block.uv)
-                scale[instance] = placement.scale[0] / plan.edge_px
-                offset[instance] = placement.offset[0] / plan.edge_px
-            if receiver.areas_m2[piece.slot] > 0:
-                texels = _texels(unwraps[receiver.primitive], scale[instance] * plan.edge_px)
-                reached.append(np.sqrt(texels / receiver.areas_m2[piece.slot]))
-            if piece.texels(plan.density) < 1.0:
-                tiny.append(scene.instances[instance].name or f"instance {instance}")
+    reached: list[float] = []
+    for page, piece, placement in _placements(plan):
+        receiver = receivers[piece.receiver]
+        instance = receiver.instances[piece.slot]
+        page_of[instance] = page
+        if receiver.loose:
+            unwraps[receiver.primitive] = _loose_unwrap(receiver, placement, plan.edge_px)
+        else:
+            block = plan.blocks[piece.receiver]
+            unwraps.setdefault(receiver.primitive, _unwrap(receiver, block.uv))
+            scale[instance] = placement.scale[0] / plan.edge_px
+            offset[instance] = placement.offset[0] / plan.edge_px
+        if receiver.areas_m2[piece.slot] > 0:
+            texels = _texels(unwraps[receiver.primitive], scale[instance] * plan.edge_px)
+            reached.append(np.sqrt(texels / receiver.areas_m2[piece.slot]))
     median = float(np.median(reached)) if reached else 0.0
     return LightmapLayout(
         n_pages=len(plan.pages),
         width_px=plan.edge_px,
         height_px=plan.edge_px,
-        unwraps=tuple(unwraps),
+        unwraps=tuple(unwraps.get(p) for p in range(len(scene.primitives))),
         page=page_of,
         scale=scale,
         offset=offset,
         texels_per_metre=median,
-        notes=(_choice(plan, median), *notes, *_remarks(plan, tiny)),
+        notes=(_choice(plan, median), *notes, *_remarks(scene, receivers, plan)),
     )
+
+
+def _placements(plan: Plan) -> Iterator[tuple[int, Piece, Placement]]:
+    """Page number, piece and place of everything."""
+    for page, (pieces, packed) in enumerate(zip(plan.pieces, plan.pages, strict=True)):
+        for piece, placement in zip(pieces, packed.placements, strict=True):
+            yield page, piece, placement
 
 
 def _loose_unwrap(receiver: Receiver, placement: Placement, edge_px: int) -> Unwrap:
@@ -99,13 +105,19 @@ def _choice(plan: Plan, texels_per_metre: float) -> str:
     return f"lightmap: {pages} of {plan.edge_px} × {plan.edge_px} texels, {texels_per_metre:.3g} per metre"
 
 
-def _remarks(plan: Plan, tiny: list[str]) -> list[str]:
+def _remarks(scene: Scene, receivers: Sequence[Receiver], plan: Plan) -> list[str]:
     remarks = []
     if plan.n_shrunk:
         remarks.append(f"{plan.n_shrunk} objects larger than a page have fewer texels per metre")
+    tiny = [
+        receivers[piece.receiver].instances[piece.slot]
+        for _, piece, _ in _placements(plan)
+        if piece.texels(plan.density) < 1.0
+    ]
     if tiny:
+        first = scene.instances[tiny[0]].name or f"instance {tiny[0]}"
         others = f" and {len(tiny) - 1} more" if len(tiny) > 1 else ""
-        remarks.append(f"smaller than one texel: {tiny[0]}{others}")
+        remarks.append(f"smaller than one texel: {first}{others}")
     return remarks
 
 

@@ -8,7 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from irradia.scene.lightmap_uv.unwrap import triangle_areas
 from irradia.scene.types import F32, F64, U32
+
+_NARROW_PX = 2.0  # islands narrower than this are packed as rectangles
+_TINY_PX2 = 1e-3  # and so are those of which no triangle is larger
+_UNASSIGNED = 0xFFFFFFFF
 
 
 @dataclass(frozen=True)
@@ -74,36 +79,77 @@ def pack(groups: Sequence[Islands], padding_px: int) -> tuple[int, int, list[Pla
     options.rotate_charts_to_axis = False
     atlas = xatlas.Atlas()
     # xatlas takes a mesh at an address that it knows for a copy of that one: keep all of them alive.
-    alive = [
-        (
-            np.ascontiguousarray(group.uv, np.float32),
-            np.ascontiguousarray(group.indices, np.uint32),
-            np.ascontiguousarray(group.island, np.uint32).reshape(-1, 1),
-        )
-        for group in groups
-    ]
-    for arrays in alive:
-        atlas.add_uv_mesh(*arrays)
+    packed = [_Robust.of(group) for group in groups]
+    for one in packed:
+        atlas.add_uv_mesh(one.uv, one.indices, one.island.reshape(-1, 1))
     atlas.generate(xatlas.ChartOptions(), options)
     size = np.array([atlas.width, atlas.height], np.float64)
     placements = []
-    for number, group in enumerate(groups):
+    for number, one in enumerate(packed):
         _, indices, uv = atlas.get_mesh(number)
-        placements.append(_placement(group, uv[indices] * size))
+        _, chart = atlas.get_mesh_vertex_assignment(number)
+        kept = (chart[indices] != _UNASSIGNED).all(axis=1)
+        placements.append(one.placement(uv[indices] * size, kept))
     return int(atlas.width), int(atlas.height), placements
 
 
-def _placement(group: Islands, placed: F64) -> Placement:
-    """Compares each island's bounds before and after; ``placed`` is (T, 3, 2)."""
-    low, high = _bounds(group, group.uv[group.indices].astype(np.float64))
-    new_low, new_high = _bounds(group, placed)
-    scale = (new_high - new_low) / np.maximum(high - low, 1e-30)
-    return Placement(scale=scale, offset=new_low - low * scale)
+@dataclass(frozen=True)
+class _Robust:
+    """Islands as xatlas gets them: it would drop degenerate ones, so rectangles stand in for those.
+
+    Attributes:
+        uv, indices, island: See :class:`Islands`.
+        replaced: (C,) which islands are rectangles.
+        low, high: (C, 2) bounds of the true islands.
+    """
+
+    uv: F32
+    indices: U32
+    island: U32
+    replaced: NDArray[np.bool_]
+    low: F64
+    high: F64
+
+    @classmethod
+    def of(cls, group: Islands) -> _Robust:
+        """Replaces what is narrow or has no triangle of any size."""
+        corners = group.uv[group.indices].astype(np.float64)
+        low, high = _bounds(group.island, corners)
+        largest = np.zeros(len(low))
+        np.maximum.at(largest, group.island, triangle_areas(group.uv, group.indices))
+        replaced = ((high - low).min(axis=1) < _NARROW_PX) | (largest < _TINY_PX2)
+        stays = ~replaced[group.island]
+        number = np.flatnonzero(replaced)
+        extent = np.maximum(high - low, 0.5)[number]
+        squares = low[number, None] + extent[:, None] * np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+        quads = np.array([[0, 1, 2], [0, 2, 3]]) + 4 * np.arange(len(number))[:, None, None] + len(group.uv)
+        return cls(
+            uv=np.concatenate([group.uv, squares.reshape(-1, 2)]).astype(np.float32),
+            indices=np.concatenate([group.indices[stays], quads.reshape(-1, 3)]).astype(np.uint32),
+            island=np.concatenate([group.island[stays], np.repeat(number, 2)]).astype(np.uint32),
+            replaced=replaced,
+            low=low,
+            high=high,
+        )
+
+    def placement(self, placed: F64, kept: NDArray[np.bool_]) -> Placement:
+        """Compares bounds before and after packing.
+
+        Args:
+            placed: (T, 3, 2) where the triangles went.
+            kept: (T,) which of them xatlas took into account.
+        """
+        low, high = _bounds(self.island[kept], self.uv[self.indices[kept]].astype(np.float64))
+        low = np.where(self.replaced[:, None], self.low, low)
+        high = np.where(self.replaced[:, None], self.high, high)
+        new_low, new_high = _bounds(self.island[kept], placed[kept])
+        scale = (new_high - new_low) / np.maximum(high - low, 1e-30)
+        return Placement(scale=scale, offset=new_low - low * scale)
 
 
-def _bounds(group: Islands, corners: F64) -> tuple[F64, F64]:
-    """Lowest and highest corner of each island, (C, 2) each."""
-    order = np.argsort(group.island, kind="stable")
-    first = np.searchsorted(group.island[order], np.arange(int(group.island.max()) + 1))
+def _bounds(island: U32, corners: F64) -> tuple[F64, F64]:
+    """Lowest and highest corner of each island (C, 2) of triangles (T, 3, 2)."""
+    order = np.argsort(island, kind="stable")
+    first = np.searchsorted(island[order], np.arange(int(island.max()) + 1))
     low = np.minimum.reduceat(corners.min(axis=1)[order], first)
     return low, np.maximum.reduceat(corners.max(axis=1)[order], first)

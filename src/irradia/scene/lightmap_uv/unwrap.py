@@ -182,7 +182,7 @@ def _cache_path(positions: F64, normals: F32, indices: U32) -> Path:
 def _read(path: Path) -> Charts | None:
     """What the cache holds, or None where it holds nothing or something broken."""
     try:
-        with np.load(path, allow_pickle=False) as stored:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as stored:
             return Charts(**{name: stored[name] for name in Charts.__dataclass_fields__})
     except (OSError, KeyError, ValueError, EOFError, zipfile.BadZipFile):
         return None
