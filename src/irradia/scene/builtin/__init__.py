@@ -34,6 +34,7 @@ _SCENES: dict[str, tuple[str, tuple]] = {
     "closed": ("closed", ()),
     "plane-point": ("plane_point", ()),
     "rectangle": ("rectangle", ()),
+    "atrium": ("atrium", ()),
     "pane": ("pane", ()),
     "cylinder": ("cylinder", ()),
     "leaks": ("leaks", ()),

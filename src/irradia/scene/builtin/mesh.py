@@ -57,6 +57,16 @@ class Mesh:
         """Copy whose fronts are the old backs."""
         return replace(self, normals=-self.normals, indices=self.indices[:, ::-1])
 
+    def only(self, triangles: NDArray[np.bool_]) -> Mesh:
+        """Copy with the chosen triangles, (T,), and the vertices that they use."""
+        used, compact = np.unique(self.indices[triangles], return_inverse=True)
+        return Mesh(
+            self.positions[used],
+            self.normals[used],
+            self.uv[used],
+            compact.reshape(-1, 3).astype(np.uint32),
+        )
+
     def uv_moved(self, u: float, v: float) -> Mesh:
         """Copy with shifted texture coordinates (metres), so that neighbours don't repeat a pattern."""
         return replace(self, uv=self.uv + np.array([u, v]))
@@ -99,11 +109,7 @@ def drop_degenerate(mesh: Mesh, smallest_area_m2: float = 1e-12) -> Mesh:
     """Copy without zero-area triangles (poles of a surface of revolution) and unused vertices."""
     a, b, c = (mesh.positions[mesh.indices[:, k]] for k in range(3))
     area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    indices = mesh.indices[area > smallest_area_m2]
-    used, compact = np.unique(indices, return_inverse=True)
-    return Mesh(
-        mesh.positions[used], mesh.normals[used], mesh.uv[used], compact.reshape(-1, 3).astype(np.uint32)
-    )
+    return mesh.only(area > smallest_area_m2)
 
 
 def rotation_y(yaw_deg: float) -> Array:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -50,9 +53,9 @@ def floor(size_x: float, size_z: float, y: float = 0.0, n_x: int = 1, n_z: int =
 
 def box(low: ArrayLike, high: ArrayLike) -> Mesh:
     """A closed box between two corners, flat faces: 24 vertices, 12 triangles."""
-    (x0, y0, z0), (x1, y1, z1) = np.asarray(low, np.float64), np.asarray(high, np.float64)
-    dx, dy, dz = x1 - x0, y1 - y0, z1 - z0
-    return join(
+    low, high = np.asarray(low, np.float64), np.asarray(high, np.float64)
+    (x0, y0, z0), (x1, y1, z1), (dx, dy, dz) = low, high, high - low
+    faces = join(
         quad((x1, y0, z1), (0, 0, -dz), (0, dy, 0)),
         quad((x0, y0, z0), (0, 0, dz), (0, dy, 0)),
         quad((x0, y1, z1), (dx, 0, 0), (0, 0, -dz)),
@@ -60,12 +63,55 @@ def box(low: ArrayLike, high: ArrayLike) -> Mesh:
         quad((x0, y0, z1), (dx, 0, 0), (0, dy, 0)),
         quad((x1, y0, z0), (-dx, 0, 0), (0, dy, 0)),
     )
+    # Faces meet to the last bit: y0 + dy needs not be y1.
+    nearer_high = np.abs(faces.positions - high) < np.abs(faces.positions - low)
+    return replace(faces, positions=np.where(nearer_high, high, low))
 
 
 def centred_box(size: ArrayLike, centre: ArrayLike = (0.0, 0.0, 0.0)) -> Mesh:
     """A closed box given by its size and centre."""
     size, centre = np.asarray(size, np.float64), np.asarray(centre, np.float64)
     return box(centre - size / 2, centre + size / 2)
+
+
+def bevelled_box(low: ArrayLike, high: ArrayLike, bevel: float) -> Mesh:
+    """A closed box whose edges are cut; shading runs smoothly from face to face across the cuts."""
+    low, high = np.asarray(low, np.float64), np.asarray(high, np.float64)
+    faces = box(low, high)
+    # Each face shrinks within its plane; corners k and l of two faces then bound a cut.
+    towards_middle = np.sign((low + high) / 2 - faces.positions) * (np.abs(faces.normals) < 0.5)
+    positions = faces.positions + bevel * towards_middle
+    cuts = [*_edge_cuts(faces.positions), *_corner_cuts(faces.positions)]
+    turned = [_turn_outward(triangle, positions, (low + high) / 2) for triangle in cuts]
+    return Mesh(positions, faces.normals, faces.uv, np.concatenate([faces.indices, turned]).astype(np.uint32))
+
+
+def _edge_cuts(corners: Array) -> list[tuple[int, ...]]:
+    """Two triangles for each edge of a 24-vertex box, between the two faces that share it."""
+    cuts: list[tuple[int, ...]] = []
+    for first, second in itertools.combinations(range(0, 24, 4), 2):
+        shared = [
+            (k, m)
+            for k in range(first, first + 4)
+            for m in range(second, second + 4)
+            if np.array_equal(corners[k], corners[m])
+        ]
+        if shared:
+            (a, b), (c, d) = shared
+            cuts += [(a, b, c), (c, b, d)]
+    return cuts
+
+
+def _corner_cuts(corners: Array) -> list[tuple[int, ...]]:
+    """One triangle for each corner of a 24-vertex box."""
+    _, corner = np.unique(corners, axis=0, return_inverse=True)
+    return [tuple(np.flatnonzero(corner.reshape(-1) == k).tolist()) for k in range(8)]
+
+
+def _turn_outward(triangle: tuple[int, ...], positions: Array, centre: Array) -> tuple[int, ...]:
+    a, b, c = positions[list(triangle)]
+    outward = np.cross(b - a, c - a) @ (a - centre) > 0
+    return triangle if outward else triangle[::-1]
 
 
 def disc(radius: float, y: float, n_sides: int, up: bool = True) -> Mesh:
