@@ -115,7 +115,7 @@ def describe(job: BakeJob, summary: BakeSummary) -> str:
     lines = [
         f"{record['scene']}: {lightmap['n_texels']:,} texels on {pages} of "
         f"{lightmap['width_px']} × {lightmap['height_px']}, {stats['samples_per_texel']} samples each, "
-        f"{record['samples_per_second'] / 1e6:.2f} M samples/s",
+        f"baked in {record['bake_s']:.1f} s ({record['samples_per_second'] / 1e6:.2f} M samples/s)",
         "No reference was rendered (--no-report)."
         if found is None
         else f"Against the path-traced reference: HDR-FLIP {found['flip']:.4f}, "

@@ -78,6 +78,7 @@ def bake_record(
             "texels_per_metre": baked.layout.texels_per_metre,
         },
         "stats": stats,
+        "bake_s": round(baked.bake_s, 4),
         "stage_s": {name: round(seconds, 4) for name, seconds in progress.seconds.items()},
         "peak_memory_bytes": peak_memory_bytes(),
         "against_reference": _against_reference(baked),

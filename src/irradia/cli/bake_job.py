@@ -55,11 +55,17 @@ class BakeJob:
 
 @dataclass(frozen=True)
 class Baked:
-    """A finished bake that is not yet written."""
+    """A finished bake that is not yet written.
+
+    Attributes:
+        bake_s: Wall time from opening the file to the finished pages.
+        view: For the report, rendered after that.
+    """
 
     scene: Scene
     layout: LightmapLayout
     result: LightmapResult
+    bake_s: float
     view: View | None
 
 
@@ -109,15 +115,17 @@ def _bake(job: BakeJob, progress: Progress) -> Baked:
     from irradia.bake.lightmap import bake_lightmap
     from irradia.scene.lightmap_uv import layout_lightmap
 
+    start = time.perf_counter()
     scene = open_scene(job.scene, job.load, job.light, progress)
     layout = layout_lightmap(scene, job.layout, progress)
     for note in layout.notes:
         progress.say(note)
     result = bake_lightmap(scene, layout, job.bake, progress)
+    bake_s = time.perf_counter() - start
     if job.views is None:
-        return Baked(scene, layout, result, None)
+        return Baked(scene, layout, result, bake_s, None)
     from irradia.cli.bake_views import render_view
     from irradia.transport.render import BakedLight
 
     view = render_view(scene, BakedLight(layout, result.pages), job.views, progress)
-    return Baked(scene, layout, result, view)
+    return Baked(scene, layout, result, bake_s, view)

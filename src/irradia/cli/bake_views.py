@@ -33,10 +33,10 @@ class ViewOptions:
         fast_rays: Gives up watertight intersection for speed.
     """
 
-    n_pixels: int = 960 * 540
-    reference_spp: int = 256
-    full_spp: int = 64
-    baked_spp: int = 32
+    n_pixels: int = 768 * 432
+    reference_spp: int = 128
+    full_spp: int = 32
+    baked_spp: int = 16
     seed: int = 0
     fast_rays: bool = False
 

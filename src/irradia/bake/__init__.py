@@ -1,0 +1,1 @@
+"""The bake: texels, epochs, denoise, dilation; arrays in, arrays out."""
