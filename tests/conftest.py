@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import os
+import shutil
+import subprocess
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -44,3 +48,36 @@ def cpu_device():
     from irradia.core.device import prepare
 
     return prepare("cpu")
+
+
+@pytest.fixture(scope="session")
+def web_check():
+    """Runs one of web/checks in node: ``web_check("validate", *arguments)`` gives its JSON.
+
+    Fails where node or the packages of web/ are missing; ``make setup-dev`` installs both.
+    """
+    node = shutil.which("node")
+    compiler = ROOT / "web" / "node_modules" / "typescript" / "bin" / "tsc"
+    if node is None or not compiler.is_file():
+        pytest.fail("node or web/node_modules is missing: run `make setup-dev`")
+    subprocess.run([node, compiler, "--project", ROOT / "web"], check=True)
+
+    def run(name: str, *arguments: Path | str) -> Any:
+        command = [node, ROOT / "web" / "dist" / "checks" / f"{name}.js", *map(str, arguments)]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+        if done.returncode:
+            pytest.fail(f"web check {name} failed:\n{done.stderr}")
+        return json.loads(done.stdout)
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def chromium() -> str:
+    """The browser that draws; fails where there is none, as ``make setup-dev`` installs one."""
+    from irradia.cli.machine import find_chromium
+
+    program = find_chromium()
+    if program is None:
+        pytest.fail("chromium is missing: run `make setup-dev`, or set IRRADIA_CHROMIUM")
+    return program

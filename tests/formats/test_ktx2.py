@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import struct
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from irradia.core.errors import InputError
 from irradia.formats.ktx2 import Encoding, decode_ktx2, encode_ktx2
+from irradia.formats.rgb9e5 import pack_rgb9e5
 
 
 @pytest.fixture
@@ -102,3 +104,31 @@ def test_other_textures_are_refused(pages: np.ndarray, at: int, value: int) -> N
     data[at : at + 4] = value.to_bytes(4, "little")
     with pytest.raises(InputError):
         decode_ktx2(bytes(data))
+
+
+@pytest.mark.parametrize("encoding", ["half", "rgb9e5"])
+def test_ktx_parse_and_zstddec_read_the_same(
+    web_check, tmp_path: Path, pages: np.ndarray, encoding: Encoding
+) -> None:
+    """Two libraries that aren't ours, in node."""
+    (tmp_path / "a.ktx2").write_bytes(encode_ktx2(pages, encoding, {"irradia:scale": "4"}))
+    fields = web_check("read-ktx2", tmp_path / "a.ktx2", tmp_path / "texels.bin")
+    height, width = pages.shape[1:3]
+    assert (fields["pixelWidth"], fields["pixelHeight"], fields["layerCount"]) == (width, height, 3)
+    assert (fields["faceCount"], fields["nLevels"], fields["supercompressionScheme"]) == (1, 1, 2)
+    assert fields["keyValue"]["KTXorientation"] == "rd"
+    assert fields["keyValue"]["irradia:scale"] == "4"
+    descriptor = fields["dataFormatDescriptor"][0]
+    assert (descriptor["colorModel"], descriptor["colorPrimaries"], descriptor["transferFunction"]) == (
+        1,
+        1,
+        1,
+    )
+    texels = (tmp_path / "texels.bin").read_bytes()
+    if encoding == "half":
+        found = np.frombuffer(texels, "<f2").reshape(*pages.shape[:3], 4)[..., :3].astype(np.float32)
+        np.testing.assert_array_equal(found, pages.astype(np.float16))
+    else:
+        np.testing.assert_array_equal(
+            np.frombuffer(texels, "<u4").reshape(pages.shape[:3]), pack_rgb9e5(pages)
+        )
