@@ -88,6 +88,13 @@ def test_flip_sees_an_error_where_it_is(reference: np.ndarray) -> None:
     assert result.error[:8, :8].max() == 0.0
 
 
+def test_flip_sees_errors_in_images_of_hardly_any_contrast() -> None:
+    """One exposure would do for them, but flip-evaluator finds no error at one."""
+    flat = np.full((16, 16, 3), 0.5, np.float32)
+    assert flip(flat * 1.5, flat).mean > 0.05
+    assert flip(flat, np.zeros_like(flat)).mean > 0.05
+
+
 def test_flip_exposures_ignore_a_firefly(reference: np.ndarray) -> None:
     spiked = reference.copy()
     spiked[0, 0] = 1e5

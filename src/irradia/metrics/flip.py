@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.core.colour import luminance
+from irradia.core.errors import InternalError
 
 PIXELS_PER_DEGREE = 67.0  # a 0.7 m wide 4K display seen from 0.7 m: FLIP's default
 _BRIGHT_PERCENTILE = 99.0
@@ -22,10 +23,17 @@ _MAX_EXPOSURES = 16
 
 @dataclass(frozen=True)
 class FlipExposures:
-    """The exposures that HDR-FLIP looks at: from ``start_ev`` to ``stop_ev`` stops, one a stop."""
+    """The exposures that HDR-FLIP looks at: from ``start_ev`` to ``stop_ev`` stops, one a stop.
+
+    Two at least: given a single one, flip-evaluator finds no error anywhere.
+    """
 
     start_ev: int
     stop_ev: int
+
+    def __post_init__(self) -> None:
+        if self.stop_ev <= self.start_ev:
+            raise InternalError(f"expected two exposures at least, found {self.start_ev} to {self.stop_ev}")
 
     @property
     def count(self) -> int:
@@ -52,15 +60,18 @@ class FlipResult:
 
 
 def flip_exposures(reference: NDArray) -> FlipExposures:
-    """Exposures for a reference (…, 3): its 99th percentile shown as 1, up to its median shown as 1."""
+    """Exposures for a reference (…, 3): its 99th percentile shown as 1, up to its median shown as 1.
+
+    Where these are closer than a stop, one stop more is looked at.
+    """
     lit = luminance(reference).astype(np.float64)
     lit = lit[lit > 0.0]
     if lit.size == 0:
-        return FlipExposures(0, 0)
+        return FlipExposures(0, 1)
     bright, middle = np.percentile(lit, [_BRIGHT_PERCENTILE, 50.0])
     start = round(-math.log2(bright))
     stop = round(-math.log2(middle))
-    return FlipExposures(start, min(max(start, stop), start + _MAX_EXPOSURES - 1))
+    return FlipExposures(start, min(max(start + 1, stop), start + _MAX_EXPOSURES - 1))
 
 
 def flip(test: NDArray, reference: NDArray, exposures: FlipExposures | None = None) -> FlipResult:
