@@ -301,3 +301,14 @@ def test_file_is_written_whole(gallery: GltfDocument, bake, tmp_path: Path) -> N
     write_baked_glb(tmp_path / "out" / "scene.baked.glb", baked.scene, baked.layout, baked.pages)
     assert (tmp_path / "out" / "scene.baked.glb").read_bytes() == baked.path.read_bytes()
     assert [file.name for file in (tmp_path / "out").iterdir()] == ["scene.baked.glb"]
+
+
+def test_baking_a_baked_file_again_replaces_its_lightmap(gallery: GltfDocument, bake) -> None:
+    once = bake(gallery, compatible=True)
+    again = bake(once.document, compatible=True)
+    for key in ("materials", "textures", "images", "meshes", "nodes", "extensionsUsed"):
+        assert len(again.json[key]) == len(once.json[key])
+    assert count_moz(again.json) == count_moz(once.json)
+    assert len(again.document.buffers[0]) < 1.02 * len(once.document.buffers[0])
+    assert entries_of(again.json, again.json["nodes"][4])[0]["texCoord"] == 2
+    assert again.json["nodes"][8]["extensions"] == {NAME: {"bakedLight": 0}}

@@ -15,6 +15,7 @@ from irradia.core.errors import InternalError
 from irradia.core.files import write_atomic
 from irradia.export import lighting_extension
 from irradia.export.bindings import bind_nodes
+from irradia.export.earlier_bake import remove_earlier_bake
 from irradia.export.instances import GPU_INSTANCING, write_out_gpu_instances
 from irradia.export.lighting_extension import InstanceTables, bind_node
 from irradia.export.meshes import MeshVersions, freed_accessors, freed_materials, primitive_texcoord
@@ -102,15 +103,21 @@ class _Export:
         )
         self._bound = bind_nodes(scene, layout, nodes, write_out=compatible)
         free = freed_accessors(self.json, self._bound)
-        self._slots = Slots(self.json, self._accessors.read_view, free)
+        self._slots = Slots(self.json, self._accessors, free)
+        self._moz = MozLightmaps(
+            self.json,
+            self._slots,
+            pages,
+            free_materials=freed_materials(self.json, self._bound),
+            free_textures=remove_earlier_bake(self.json),
+        )
 
     def run(self, encoding: Encoding) -> bytes:
         """Changes the JSON and returns the binary chunk."""
-        moz = MozLightmaps(self.json, self._slots, self._pages, freed_materials(self.json, self._bound))
         self._bind_nodes()
         writer = PrimitiveWriter(self._document, self._accessors, self._slots)
-        MeshVersions(self.json, self._scene, self._layout, writer, moz).write(self._bound)
-        used = {MOZ_LIGHTMAP} if moz.used else set()
+        MeshVersions(self.json, self._scene, self._layout, writer, self._moz).write(self._bound)
+        used = {MOZ_LIGHTMAP} if self._moz.used else set()
         if self._bound:
             lighting_extension.move_baked_lights(self.json)
             lighting_extension.add_lightmap(self.json, self._slots, self._pages, encoding)
@@ -143,7 +150,7 @@ class _Export:
 
     def _list_extensions(self, added: set[str]) -> None:
         """Adds ours and removes those that nothing uses any more."""
-        gone = {*_COMPRESSION}
+        gone = {*_COMPRESSION, MOZ_LIGHTMAP, lighting_extension.NAME} - added
         if GPU_INSTANCING not in _node_extensions(self.json):
             gone.add(GPU_INSTANCING)
         for key, extra in (("extensionsUsed", added), ("extensionsRequired", set())):

@@ -9,11 +9,12 @@ scale alone, and a plugin for three.js r155 or newer, whose lightMap is E, sets
 from __future__ import annotations
 
 import copy
+import math
 
 import numpy as np
 from numpy.typing import NDArray
 
-from irradia.core.colour import srgb_from_linear
+from irradia.core.colour import preview_srgb8
 from irradia.export.primitives import MOZ_LIGHTMAP
 from irradia.export.slots import Slots
 from irradia.formats.png import encode_png
@@ -22,6 +23,7 @@ from irradia.scene.gltf.document import Json
 _LINEAR, _CLAMP = 9729, 33071
 _CLIPPED_PERCENTILE = 99.95
 _MAX_HEADROOM = 4.0
+_BAND_ROWS = 256
 
 
 def moz_scale(page: NDArray[np.float32]) -> float:
@@ -49,14 +51,22 @@ class MozLightmaps:
         slots: Where image bytes go.
         pages: (P, H, W, 3) E/π.
         free_materials: Materials that nothing else uses: their first copy takes their place.
+        free_textures: Textures of an earlier bake, whose places new pages take.
     """
 
     def __init__(
-        self, json: Json, slots: Slots, pages: NDArray[np.float32], free_materials: set[int]
+        self,
+        json: Json,
+        slots: Slots,
+        pages: NDArray[np.float32],
+        *,
+        free_materials: set[int],
+        free_textures: list[int],
     ) -> None:
         self._json = json
         self._originals: list[Json] = copy.deepcopy(json.get("materials", []))
         self._free = set(free_materials)
+        self._free_textures = list(free_textures)
         self._slots = slots
         self._pages = pages
         self._textures: dict[int, tuple[int, float]] = {}
@@ -91,14 +101,29 @@ class MozLightmaps:
         if page not in self._textures:
             pixels = self._pages[page]
             scale = moz_scale(pixels)
-            coded = np.round(srgb_from_linear(pixels / np.float32(scale)) * 255.0).astype(np.uint8)
             image: Json = {"name": f"lightmap {page}", "mimeType": "image/png", "bufferView": -1}
-            self._slots.add_blob(encode_png(coded), lambda view: image.update(bufferView=view))
-            source = _append(self._json, "images", image)
-            sampler = {"magFilter": _LINEAR, "minFilter": _LINEAR, "wrapS": _CLAMP, "wrapT": _CLAMP}
-            texture = {"source": source, "sampler": _append(self._json, "samplers", sampler)}
-            self._textures[page] = _append(self._json, "textures", texture), scale
+            png = encode_png(_coded(pixels, scale))
+            self._slots.add_blob(png, lambda view: image.update(bufferView=view))
+            self._textures[page] = self._place(image), scale
         return self._textures[page]
+
+    def _place(self, image: Json) -> int:
+        """Index of a texture that shows ``image``."""
+        if self._free_textures:
+            texture = self._free_textures.pop(0)
+            self._json["images"][self._json["textures"][texture]["source"]] = image
+            return texture
+        source = _append(self._json, "images", image)
+        sampler = {"magFilter": _LINEAR, "minFilter": _LINEAR, "wrapS": _CLAMP, "wrapT": _CLAMP}
+        texture = {"source": source, "sampler": _append(self._json, "samplers", sampler)}
+        return _append(self._json, "textures", texture)
+
+
+def _coded(page: NDArray[np.float32], scale: float) -> NDArray[np.uint8]:
+    """The sRGB codes of a page over its scale, a band of rows at a time to stay small."""
+    exposure = -math.log2(scale)
+    bands = range(0, len(page), _BAND_ROWS)
+    return np.concatenate([preview_srgb8(page[start : start + _BAND_ROWS], exposure) for start in bands])
 
 
 def _append(json: Json, key: str, entry: Json) -> int:

@@ -32,7 +32,8 @@ _IDENTIFIER = b"\xabKTX 20\xbb\r\n\x1a\n"
 _HEADER = struct.Struct("<9I4I2Q")  # fields, then offset and length of the DFD, key/values, globals
 _LEVEL = struct.Struct("<3Q")
 _SCHEME_NONE, _SCHEME_ZSTD = 0, 2
-_ZSTD_LEVEL = 15
+_ZSTD_LEVEL = 9  # 15 takes 4 times as long for 1 % less
+_BAND_TEXELS = 1 << 19
 _REPAIR = "The texture is incomplete or damaged: export it again."
 
 
@@ -102,10 +103,18 @@ def decode_ktx2(data: bytes, where: str = "KTX2 texture") -> Ktx2Texture:
 
 
 def _texels(pages: NDArray, encoding: Encoding) -> NDArray:
-    if encoding == "rgb9e5":
-        return pack_rgb9e5(pages).astype("<u4")
-    texels = np.ones((*pages.shape[:3], 4), "<f2")
-    texels[..., :3] = np.clip(pages, 0.0, HALF_MAX)
+    """Texels as stored, made a band of rows at a time: RGB9E5 takes 100 bytes a texel on the way."""
+    n_pages, height, width = pages.shape[:3]
+    texels = np.empty((n_pages * height, width), "<u4" if encoding == "rgb9e5" else ("<f2", (4,)))
+    rows = pages.reshape(n_pages * height, width, 3)
+    band = max(_BAND_TEXELS // width, 1)
+    for start in range(0, len(rows), band):
+        part = rows[start : start + band]
+        if encoding == "rgb9e5":
+            texels[start : start + band] = pack_rgb9e5(part)
+        else:
+            texels[start : start + band, :, :3] = np.clip(part, 0.0, HALF_MAX)
+            texels[start : start + band, :, 3] = 1.0
     return texels
 
 

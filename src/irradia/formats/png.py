@@ -20,6 +20,8 @@ from irradia.formats.limits import check_image_size
 
 U8 = NDArray[np.uint8]
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
+_ZLIB_LEVEL = 6  # 9 takes 4 times as long for 4 % less
+_BAND_ROWS = 256
 _COLOUR_TYPE = {1: 0, 2: 4, 3: 2, 4: 6}  # channels → grey, grey + alpha, RGB, RGBA
 
 
@@ -40,7 +42,7 @@ def encode_png(pixels: NDArray) -> bytes:
     check_image_size(width, height, "PNG")
     head = struct.pack(">IIBBBBB", width, height, depth, _COLOUR_TYPE[n_channels], 0, 0, 0)
     rows = np.ascontiguousarray(planes, planes.dtype.newbyteorder(">")).view(np.uint8).reshape(height, -1)
-    body = zlib.compress(_filtered(rows, n_channels * depth // 8).tobytes(), 9)
+    body = _compress(rows, n_channels * depth // 8)
     return _SIGNATURE + _chunk(b"IHDR", head) + _chunk(b"IDAT", body) + _chunk(b"IEND", b"")
 
 
@@ -70,11 +72,23 @@ def _chunk(kind: bytes, body: bytes) -> bytes:
     return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
 
 
-def _filtered(rows: U8, pixel_bytes: int) -> U8:
+def _compress(rows: U8, pixel_bytes: int) -> bytes:
+    """Filtered and deflated, a band of rows at a time: filters take 20 bytes per byte on the way."""
+    deflate = zlib.compressobj(_ZLIB_LEVEL)
+    above = np.zeros((1, rows.shape[1]), np.uint8)
+    body = []
+    for start in range(0, len(rows), _BAND_ROWS):
+        band = rows[start : start + _BAND_ROWS]
+        body.append(deflate.compress(_filtered(band, above, pixel_bytes).tobytes()))
+        above = band[-1:]
+    return b"".join((*body, deflate.flush()))
+
+
+def _filtered(rows: U8, above: U8, pixel_bytes: int) -> U8:
     """(H, 1 + row bytes): each row filtered in the way that leaves the smallest differences."""
     best = np.zeros((len(rows), rows.shape[1] + 1), np.uint8)
     lowest = np.full(len(rows), np.iinfo(np.int64).max)
-    for kind, prediction in enumerate(_predictions(rows, pixel_bytes)):
+    for kind, prediction in enumerate(_predictions(rows, above, pixel_bytes)):
         residual = rows - prediction
         cost = np.abs(residual.view(np.int8).astype(np.int16)).sum(axis=1, dtype=np.int64)
         better = cost < lowest
@@ -84,14 +98,12 @@ def _filtered(rows: U8, pixel_bytes: int) -> U8:
     return best
 
 
-def _predictions(rows: U8, pixel_bytes: int) -> tuple[U8, ...]:
+def _predictions(rows: U8, above: U8, pixel_bytes: int) -> tuple[U8, ...]:
     """What each of the five filters subtracts: nothing, left, up, their mean, Paeth's choice."""
-    left = np.zeros_like(rows)
+    up = np.concatenate([above, rows[:-1]])
+    left, corner = np.zeros_like(rows), np.zeros_like(rows)
     left[:, pixel_bytes:] = rows[:, :-pixel_bytes]
-    up = np.zeros_like(rows)
-    up[1:] = rows[:-1]
-    corner = np.zeros_like(rows)
-    corner[1:] = left[:-1]
+    corner[:, pixel_bytes:] = up[:, :-pixel_bytes]
     a, b, c = (plane.astype(np.int16) for plane in (left, up, corner))
     to_a, to_b, to_c = np.abs(b - c), np.abs(a - c), np.abs(a + b - 2 * c)
     paeth = np.where((to_a <= to_b) & (to_a <= to_c), left, np.where(to_b <= to_c, up, corner))
