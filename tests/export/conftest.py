@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -233,3 +234,19 @@ def corners():
         return found
 
     return read
+
+
+@pytest.fixture
+def draw_in_three_js(web_check, chromium: str, tmp_path: Path):
+    """Draws a .glb with stock three.js: ``draw(glb, view)`` gives linear (H, W, 3), top row first.
+
+    ``view`` is the View of web/checks/view.ts.
+    """
+
+    def draw(glb: Path, view: dict[str, Any]) -> np.ndarray:
+        (tmp_path / "view.json").write_text(json.dumps(view))
+        drawing = web_check("draw", glb, tmp_path / "view.json", chromium)
+        rgba = np.array(drawing["pixels"], np.float64).reshape(view["height"], view["width"], 4)
+        return rgba[::-1, :, :3]
+
+    return draw

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -82,24 +81,21 @@ def pages_of(layout: LightmapLayout) -> np.ndarray:
 
 def looking_down(centre_x: float, half_height: float, width: int, height: int) -> dict[str, Any]:
     """An orthographic view of the tiles from above, x to the right and z down."""
-    aim = {"eye": [centre_x, 3, 0.5], "target": [centre_x, 0, 0.5], "up": [0, 0, -1]}
-    return {"width": width, "height": height, "halfHeight": half_height, **aim}
+    world_from_camera = np.array([[1, 0, 0, centre_x], [0, 0, 1, 3], [0, -1, 0, 0.5], [0, 0, 0, 1]])
+    return {
+        "width": width,
+        "height": height,
+        "halfHeightM": half_height,
+        "worldFromCamera": world_from_camera.T.ravel().tolist(),
+    }
 
 
-def draw(web_check, chromium: str, glb: Path, view: dict[str, Any]) -> np.ndarray:
-    """Linear (height, width, 3) pixels, top row first."""
-    (glb.parent / "view.json").write_text(json.dumps(view))
-    drawing = web_check("draw", glb, glb.parent / "view.json", chromium)
-    rgba = np.array(drawing["pixels"], np.float64).reshape(view["height"], view["width"], 4)
-    return rgba[::-1, :, :3]
-
-
-def test_three_js_shows_albedo_times_irradiance_over_pi(web_check, chromium: str, tmp_path: Path) -> None:
+def test_three_js_shows_albedo_times_irradiance_over_pi(draw_in_three_js, tmp_path: Path) -> None:
     scene = four_tiles()
     layout = layout_of(scene)
     write_baked_glb(tmp_path / "tiles.glb", scene, layout, pages_of(layout))
     view = looking_down(centre_x=2.0, half_height=0.5, width=4 * 48, height=48)
-    pixels = draw(web_check, chromium, tmp_path / "tiles.glb", view)
+    pixels = draw_in_three_js(tmp_path / "tiles.glb", view)
     x, z = np.meshgrid((np.arange(192) + 0.5) / 48, (np.arange(48) + 0.5) / 48)
     expected = ALBEDO[x.astype(int)] * irradiance_over_pi(x, z)
     inner = (x % 1 > 0.1) & (x % 1 < 0.9) & (z > 0.1) & (z < 0.9)
@@ -113,13 +109,22 @@ def test_three_js_shows_albedo_times_irradiance_over_pi(web_check, chromium: str
 
 
 @pytest.mark.parametrize("factor", [0.01, 100.0])
-def test_brightness_of_the_light_does_not_matter(
-    web_check, chromium: str, tmp_path: Path, factor: float
-) -> None:
+def test_brightness_of_the_light_does_not_matter(draw_in_three_js, tmp_path: Path, factor: float) -> None:
     scene = four_tiles()
     layout = layout_of(scene)
     write_baked_glb(tmp_path / "tiles.glb", scene, layout, pages_of(layout) * np.float32(factor))
     view = looking_down(centre_x=0.5, half_height=0.4, width=16, height=16)
-    pixels = draw(web_check, chromium, tmp_path / "tiles.glb", view)
+    pixels = draw_in_three_js(tmp_path / "tiles.glb", view)
     expected = ALBEDO[0] * irradiance_over_pi(np.array(0.5), np.array(0.5))
     np.testing.assert_allclose(pixels.mean(axis=(0, 1)), factor * expected, rtol=MAX_ERROR)
+
+
+def test_documented_plugin_is_the_one_that_draws(web_check, repo_root: Path) -> None:
+    """And it has at most 15 lines."""
+    readme = (repo_root / "docs" / "IRRADIA_lighting" / "README.md").read_text("utf-8")
+    block = readme.partition("```js\n")[2].partition("```")[0]
+    assert len(block.splitlines()) <= 15
+    documented = block.partition("new GLTFLoader()")[0]
+    compiled = (repo_root / "web" / "dist" / "checks" / "moz-lightmap.js").read_text("utf-8")
+    drawn = compiled.partition("export ")[2]
+    assert drawn.split() == documented.split()

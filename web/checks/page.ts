@@ -1,11 +1,14 @@
 /** Draws /scene.glb with stock three.js into a float target and hands the linear pixels out. */
 import {
+  type Camera,
   FloatType,
   LinearFilter,
+  MathUtils,
+  Matrix4,
   NoToneMapping,
   type Object3D,
   OrthographicCamera,
-  Vector3,
+  PerspectiveCamera,
   WebGLRenderer,
   WebGLRenderTarget,
 } from "three";
@@ -39,12 +42,16 @@ function render(scene: Object3D, view: View): number[] {
   return Array.from(rgba);
 }
 
-function camera(view: View): OrthographicCamera {
-  const half = view.halfHeight;
-  const side = (half * view.width) / view.height;
-  const result = new OrthographicCamera(-side, side, half, -half, 0.01, 1000);
-  result.up.copy(new Vector3(...view.up));
-  result.position.set(...view.eye);
-  result.lookAt(...view.target);
+function camera(view: View): Camera {
+  const result = projection(view);
+  new Matrix4().fromArray(view.worldFromCamera).decompose(result.position, result.quaternion, result.scale);
   return result;
+}
+
+function projection({ width, height, halfHeightM, yfovRad }: View): Camera {
+  const aspect = width / height;
+  if (yfovRad !== undefined) return new PerspectiveCamera(MathUtils.radToDeg(yfovRad), aspect, 0.01, 1000);
+  if (halfHeightM === undefined) throw new Error("a view needs halfHeightM or yfovRad");
+  const side = halfHeightM * aspect;
+  return new OrthographicCamera(-side, side, halfHeightM, -halfHeightM, 0.01, 1000);
 }

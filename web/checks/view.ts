@@ -1,11 +1,11 @@
-/** What a page is asked to draw: an orthographic view, in metres. */
+/** What a page is asked to draw; give one of `halfHeightM` (orthographic) and `yfovRad` (perspective). */
 export interface View {
   width: number;
   height: number;
-  eye: [number, number, number];
-  target: [number, number, number];
-  up: [number, number, number];
-  halfHeight: number;
+  /** Column by column; the camera looks along its −Z. */
+  worldFromCamera: number[];
+  halfHeightM?: number;
+  yfovRad?: number;
 }
 
 /** What it hands back: linear RGBA, bottom row first. */
