@@ -161,11 +161,15 @@ def test_uv_stays_on_the_page():
         assert uv.max() <= 1
 
 
-def test_borders_of_rectangles_lie_on_texel_centres():
-    repeated = scene([quad()], [placed(0), placed(0, 2.0)])
-    layout = lay_out(repeated)
-    px = merge(repeated, layout).lightmap_uv * layout.width_px
-    assert px % 1 == pytest.approx(np.full(px.shape, 0.5), abs=1e-3)
+def test_rectangles_fill_whole_texels_from_border_to_border():
+    from irradia.bake.rasterise import rasterise
+
+    both = scene([quad(), cube()], [placed(0), placed(0, 2.0), placed(1)])
+    layout = lay_out(both)
+    texels = rasterise(merge(both, layout), layout)
+    assert texels.coverage.min() > 0.9
+    px = merge(both, layout).lightmap_uv * layout.width_px
+    assert np.abs(px - np.rint(px)).max() < 0.05
 
 
 def test_triangles_keep_their_order_and_corners():

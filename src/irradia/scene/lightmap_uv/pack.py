@@ -11,8 +11,13 @@ from numpy.typing import NDArray
 from irradia.scene.lightmap_uv.unwrap import triangle_areas
 from irradia.scene.types import F32, F64, U32
 
-_NARROW_PX = 2.0  # islands narrower than this are packed as rectangles
-_TINY_PX2 = 1e-3  # and so are those of which no triangle is larger
+# Islands that are narrow, or nearly rectangles, are packed as the rectangles that hold them: these lie
+# on whole texels exactly, while the packer gives other shapes half a texel more on each side.
+_NARROW_PX = 5.0
+_BOXY_SHARE = 0.9  # of the rectangle that the island covers
+_TINY_PX2 = 1e-3  # xatlas would drop islands of which no triangle is larger
+_ROUND_DOWN_PX = 0.2  # sizes are rounded up to whole texels, but not for so little
+INSET_PX = 1 / 64  # keeps rounding from touching the next texel
 _UNASSIGNED = 0xFFFFFFFF
 
 
@@ -35,9 +40,8 @@ class Islands:
 class Placement:
     """Where the islands went: position = uv · scale + offset, in texels of the page, per island (C, 2).
 
-    Islands are stretched to whole texels and their outermost points lie on texel centres. So texels
-    at the borders of surfaces that join hold light of the same points, and filtering at a border
-    needs no texel outside.
+    Islands are stretched to whole texels. Rectangles fill theirs from border to border; other shapes
+    have their outermost points on texel centres.
     """
 
     scale: F64
@@ -49,9 +53,8 @@ class Placement:
 
 
 def rectangle(width_px: int, height_px: int) -> Islands:
-    """An island that will lie on exactly that many texels; its outermost points are texel centres."""
-    # A hair less, since the packer rounds up.
-    w, h = max(width_px - 1.01, 0.5), max(height_px - 1.01, 0.5)
+    """An island that will have exactly that many texels."""
+    w, h = width_px, height_px
     return Islands(
         uv=np.array([[0, 0], [w, 0], [w, h], [0, h]], np.float32),
         indices=np.array([[0, 1, 2], [0, 2, 3]], np.uint32),
@@ -79,7 +82,7 @@ def pack(groups: Sequence[Islands], padding_px: int) -> tuple[int, int, list[Pla
     options.rotate_charts_to_axis = False
     atlas = xatlas.Atlas()
     # xatlas takes a mesh at an address that it knows for a copy of that one: keep all of them alive.
-    packed = [_Robust.of(group) for group in groups]
+    packed = [_Packable.of(group) for group in groups]
     for one in packed:
         atlas.add_uv_mesh(one.uv, one.indices, one.island.reshape(-1, 1))
     atlas.generate(xatlas.ChartOptions(), options)
@@ -94,40 +97,48 @@ def pack(groups: Sequence[Islands], padding_px: int) -> tuple[int, int, list[Pla
 
 
 @dataclass(frozen=True)
-class _Robust:
-    """Islands as xatlas gets them: it would drop degenerate ones, so rectangles stand in for those.
+class _Packable:
+    """Islands as the packer gets them.
 
     Attributes:
         uv, indices, island: See :class:`Islands`.
-        replaced: (C,) which islands are rectangles.
+        boxed: (C,) which islands are replaced by rectangles.
+        size_px: (C, 2) whole texels of those.
         low, high: (C, 2) bounds of the true islands.
     """
 
     uv: F32
     indices: U32
     island: U32
-    replaced: NDArray[np.bool_]
+    boxed: NDArray[np.bool_]
+    size_px: F64
     low: F64
     high: F64
 
     @classmethod
-    def of(cls, group: Islands) -> _Robust:
-        """Replaces what is narrow or has no triangle of any size."""
-        corners = group.uv[group.indices].astype(np.float64)
-        low, high = _bounds(group.island, corners)
+    def of(cls, group: Islands) -> _Packable:
+        """Replaces islands by rectangles where that packs better, or at all."""
+        low, high = _bounds(group.island, group.uv[group.indices].astype(np.float64))
+        extent = high - low
+        areas = triangle_areas(group.uv, group.indices)
         largest = np.zeros(len(low))
-        np.maximum.at(largest, group.island, triangle_areas(group.uv, group.indices))
-        replaced = ((high - low).min(axis=1) < _NARROW_PX) | (largest < _TINY_PX2)
-        stays = ~replaced[group.island]
-        number = np.flatnonzero(replaced)
-        extent = np.maximum(high - low, 0.5)[number]
-        squares = low[number, None] + extent[:, None] * np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+        np.maximum.at(largest, group.island, areas)
+        covered = np.bincount(group.island, areas, len(low)) / np.maximum(extent.prod(axis=1), 1e-30)
+        boxed = (extent.min(axis=1) < _NARROW_PX) | (covered > _BOXY_SHARE) | (largest < _TINY_PX2)
+
+        size_px = np.maximum(np.ceil(extent - _ROUND_DOWN_PX), 1.0)
+        # The packer rounds extents up to whole texels and adds one: a hair less gives what we want.
+        asked = np.maximum(size_px - 1.01, 0.5)[boxed]
+        squares = low[boxed, None] + asked[:, None] * np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+        number = np.flatnonzero(boxed)
         quads = np.array([[0, 1, 2], [0, 2, 3]]) + 4 * np.arange(len(number))[:, None, None] + len(group.uv)
+        stays = ~boxed[group.island]
         return cls(
             uv=np.concatenate([group.uv, squares.reshape(-1, 2)]).astype(np.float32),
             indices=np.concatenate([group.indices[stays], quads.reshape(-1, 3)]).astype(np.uint32),
             island=np.concatenate([group.island[stays], np.repeat(number, 2)]).astype(np.uint32),
-            replaced=replaced,
+            boxed=boxed,
+            size_px=size_px,
             low=low,
             high=high,
         )
@@ -137,12 +148,15 @@ class _Robust:
 
         Args:
             placed: (T, 3, 2) where the triangles went.
-            kept: (T,) which of them xatlas took into account.
+            kept: (T,) which of them the packer took into account.
         """
+        boxed = self.boxed[:, None]
         low, high = _bounds(self.island[kept], self.uv[self.indices[kept]].astype(np.float64))
-        low = np.where(self.replaced[:, None], self.low, low)
-        high = np.where(self.replaced[:, None], self.high, high)
+        low, high = np.where(boxed, self.low, low), np.where(boxed, self.high, high)
         new_low, new_high = _bounds(self.island[kept], placed[kept])
+        first = np.rint(new_low - 0.5)
+        new_low = np.where(boxed, first + INSET_PX, new_low)
+        new_high = np.where(boxed, first + self.size_px - INSET_PX, new_high)
         scale = (new_high - new_low) / np.maximum(high - low, 1e-30)
         return Placement(scale=scale, offset=new_low - low * scale)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from irradia.scene.lightmap_uv.pack import Islands, Placement, pack, rectangle
+from irradia.scene.lightmap_uv.pack import INSET_PX, Islands, Placement, pack, rectangle
 from irradia.scene.lightmap_uv.receivers import Receiver
 from irradia.scene.lightmap_uv.unwrap import triangle_areas
 from irradia.scene.types import F32, F64
@@ -15,6 +15,7 @@ from irradia.scene.types import F32, F64
 # The free space between charts shrinks with the rectangle. Instances that are smaller than the median
 # either get its rectangle all the same, or one of down to these shares of it, with charts farther apart.
 _FLOORS = (1.0, 0.75, 0.5, 0.25)
+_ALIKE = 0.01  # spread of sizes that counts as none
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class Block:
     Attributes:
         uv: (V', 2) as the unwrap will hold it.
         low, high: (2,) bounds of ``uv``.
-        size_px: (2,) texels it wants where a uv unit has ``texels_per_uv``.
+        size_px: (2,) texels of its rectangle where a uv unit has ``texels_per_uv``.
         min_ratio: No instance gets a smaller share of that size, so that its charts stay apart.
     """
 
@@ -63,7 +64,7 @@ class Block:
     def size_at(self, texels_per_uv: float) -> tuple[int, int]:
         """Whole texels of the rectangle at some other density."""
         ratio = texels_per_uv / self.texels_per_uv if self.texels_per_uv > 0 else 1.0
-        size = np.ceil((self.size_px - 1) * max(ratio, self.min_ratio) - 0.01).astype(int) + 1
+        size = np.ceil(self.size_px * max(ratio, self.min_ratio) - 0.01).astype(int)
         return max(int(size[0]), 1), max(int(size[1]), 1)
 
 
@@ -143,13 +144,14 @@ def _islands(receiver: Receiver, piece: Piece, density: float) -> Islands:
 def _arranged(receiver: Receiver, texels_per_uv: float, padding_px: int) -> Block:
     """Our own charts, packed for the rectangle so that all instances together take least room."""
     ratios = receiver.metres_per_uv / receiver.median_metres_per_uv
-    smallest = float(ratios.min())
-    floors = _FLOORS if smallest < 0.99 else _FLOORS[:1]
-    trials = [_arranged_down_to(receiver, texels_per_uv, padding_px, max(f, smallest)) for f in floors]
-    room = [
-        float(np.prod(block.size_px)) * float((np.maximum(ratios, block.min_ratio) ** 2).sum())
-        for block in trials
-    ]
+    if np.ptp(ratios) < _ALIKE:
+        return _arranged_down_to(receiver, texels_per_uv, padding_px, 1.0)
+    trials = []
+    for floor in np.maximum(_FLOORS, ratios.min()):
+        # Scaled charts don't meet texel borders: one texel more keeps as many between them free.
+        padding = int(np.ceil((padding_px + 1) / min(floor, 1.0) - 0.01))
+        trials.append(_arranged_down_to(receiver, texels_per_uv, padding, floor))
+    room = [np.prod(block.size_px) * (np.maximum(ratios, block.min_ratio) ** 2).sum() for block in trials]
     return trials[int(np.argmin(room))]
 
 
@@ -160,15 +162,14 @@ def _arranged_down_to(receiver: Receiver, texels_per_uv: float, padding_px: int,
         indices=charts.indices[charts.solid],
         island=charts.chart[charts.solid],
     )
-    padding = int(np.ceil((padding_px + 1) / min(min_ratio, 1.0) - 0.01)) - 1
-    width, height, (placement,) = pack([islands], padding)
+    width, height, (placement,) = pack([islands], padding_px)
+    size = np.array([width, height], np.float64)
     px = placement.apply(charts.uv * np.float32(texels_per_uv), charts.island_of_vertex())
-    extent = np.maximum(np.array([width, height], np.float64) - 1.0, 1.0)
     return Block(
-        uv=((px - 0.5) / extent).astype(np.float32),
+        uv=(px / size).astype(np.float32),
         low=np.zeros(2),
         high=np.ones(2),
-        size_px=extent + 1.0,
+        size_px=size,
         texels_per_uv=texels_per_uv,
         min_ratio=min_ratio,
     )
@@ -179,14 +180,15 @@ def _as_it_is(receiver: Receiver, texels_per_uv: float, _padding_px: int) -> Blo
     charts = receiver.charts
     used = charts.uv[np.unique(charts.indices)].astype(np.float64)
     low, high = used.min(axis=0), used.max(axis=0)
-    return Block(charts.uv, low, high, (high - low) * texels_per_uv + 1.0, texels_per_uv)
+    size_px = np.maximum((high - low) * texels_per_uv, 1.0)
+    margin = (high - low) * INSET_PX / size_px
+    return Block(charts.uv, low - margin, high + margin, size_px, texels_per_uv)
 
 
 def _into_rectangle(block: Block, size: tuple[int, int], placed: Placement) -> Placement:
-    """Spans a block's bounds from the first to the last texel centre of its rectangle."""
-    origin = np.rint(placed.offset[0] - 0.5)
-    extent = np.array(size, np.float64) - 1.0
+    """Spans a block's bounds from border to border of its rectangle."""
+    origin = np.rint(placed.offset[0])
     span = block.high - block.low
-    inset = np.where((extent > 0) | (span == 0), 0.5, 0.25)  # a single texel keeps some area
-    scale = np.where(extent > 0, extent, 0.5) / np.where(span > 0, span, np.inf)
-    return Placement(scale=scale[None], offset=(origin + inset - block.low * scale)[None])
+    scale = np.array(size) / np.where(span > 0, span, np.inf)
+    start = origin + np.where(span > 0, 0.0, 0.5)  # what has no extent lies inside its texel
+    return Placement(scale=scale[None], offset=(start - block.low * scale)[None])

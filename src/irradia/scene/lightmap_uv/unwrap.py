@@ -17,7 +17,7 @@ from irradia.scene.types import F32, F64, U32, Primitive
 # xatlas packs what it cut on a page of about this edge. It rounds a chart's extent to whole texels of
 # that page, so a coarse one would stretch small charts.
 _PAGE_PX = 2048
-_MAX_COST = 4.0  # xatlas stops growing a chart here; its own 2 gives a fifth more charts on scans
+_MAX_COST = 16.0  # xatlas stops growing a chart here; its own 2 gives a quarter more charts
 _NO_CHART = np.uint32(0xFFFFFFFF)
 _CACHED_FROM = 500  # triangles; smaller primitives unwrap faster than a file opens
 _CACHE_VERSION = "unwrap-1"
