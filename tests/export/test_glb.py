@@ -227,6 +227,31 @@ def test_replaced_data_is_dropped(gallery: GltfDocument, bake) -> None:
     assert bytes(colours) not in baked.document.buffers[0]
 
 
+def test_views_that_primitives_share_with_others_shed_what_went(gallery: GltfDocument, bake) -> None:
+    """Exporters put all vectors into one buffer view; one untouched primitive must not keep them all."""
+    merge_views(gallery.json)
+    baked = bake(gallery)
+    old, new = Accessors(gallery), Accessors(baked.document)
+    for accessor in used_outside_meshes(gallery.json):
+        np.testing.assert_array_equal(new.read(accessor).values, old.read(accessor).values)
+    delta = old.read(gallery.json["meshes"][0]["primitives"][0]["targets"][0]["POSITION"]).values.tobytes()
+    assert delta in gallery.buffers[0]
+    assert delta not in baked.document.buffers[0]
+
+
+def merge_views(json_: dict) -> None:
+    """Turns the views of all accessors but indices and sparse ones into one over the whole buffer."""
+    views = json_["bufferViews"]
+    before = list(views)
+    for accessor in json_["accessors"]:
+        view = before[accessor.get("bufferView", 0)]
+        if accessor["type"] != "SCALAR" and "bufferView" in accessor and "byteStride" not in view:
+            accessor["byteOffset"] = view["byteOffset"]
+            views[accessor["bufferView"]] = {"buffer": 0, "byteOffset": 0, "byteLength": 4}
+            accessor["bufferView"] = 0
+    views[0] = {"buffer": 0, "byteOffset": 0, "byteLength": json_["buffers"][0]["byteLength"]}
+
+
 def test_extensions_are_listed_once_and_images_move_inside(gallery: GltfDocument, bake) -> None:
     baked = bake(gallery)
     assert baked.json["extensionsUsed"] == [*gallery.json["extensionsUsed"], NAME, "MOZ_lightmap"]
@@ -312,3 +337,14 @@ def test_baking_a_baked_file_again_replaces_its_lightmap(gallery: GltfDocument, 
     assert len(again.document.buffers[0]) < 1.02 * len(once.document.buffers[0])
     assert entries_of(again.json, again.json["nodes"][4])[0]["texCoord"] == 2
     assert again.json["nodes"][8]["extensions"] == {NAME: {"bakedLight": 0}}
+
+
+def test_baked_file_without_lightmap_the_second_time_has_none(gallery: GltfDocument, bake) -> None:
+    once = bake(gallery)
+    scene = document_to_scene(once.document)
+    dark = replace(once.layout, unwraps=(None,) * len(scene.primitives))
+    data = baked_glb(scene, dark, once.pages)
+    json_ = json.loads(data[20 : 20 + struct.unpack_from("<I", data, 12)[0]])
+    assert "MOZ_lightmap" not in json.dumps(json_)
+    assert [node for node in json_["nodes"] if entries_of(json_, node)] == []
+    assert "lightmap" not in json_["extensions"].get(NAME, {})

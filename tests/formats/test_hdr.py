@@ -96,7 +96,8 @@ def test_bad_old_pixels_are_input_errors(body: bytes) -> None:
     [
         bytes([2, 2, 0, 8]),
         bytes([2, 2, 0, 9]) + bytes([136, 1]) * 4,  # another width
-        bytes([2, 2, 0, 8, 0]),  # empty run
+        bytes([2, 2, 0, 8, 0]) + bytes([136, 1]) * 4,  # empty run
+        bytes([2, 2, 0, 8, 137, 1, 135, 1, 136, 1, 136, 1]),  # red runs into green
         bytes([2, 2, 0, 8]) + bytes([137, 1]) * 4,  # leaves the scanline
         bytes([2, 2, 0, 8]) + bytes([136, 1]) * 3 + bytes([8, 1, 2]),  # cut short
     ],

@@ -106,6 +106,14 @@ def test_other_textures_are_refused(pages: np.ndarray, at: int, value: int) -> N
         decode_ktx2(bytes(data))
 
 
+def test_data_that_inflates_to_more_than_the_header_says_is_refused(pages: np.ndarray) -> None:
+    data = bytearray(encode_ktx2(pages))
+    data[24:28] = (12).to_bytes(4, "little")
+    data[96:104] = (3 * 12 * 7 * 4).to_bytes(8, "little")
+    with pytest.raises(InputError, match="bytes of texels"):
+        decode_ktx2(bytes(data))
+
+
 @pytest.mark.parametrize("encoding", ["half", "rgb9e5"])
 def test_ktx_parse_and_zstddec_read_the_same(
     web_check, tmp_path: Path, pages: np.ndarray, encoding: Encoding

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,35 @@ def test_pillow_reads_back_8_bits(tmp_path: Path, n_channels: int, smooth: bool)
     with Image.open(tmp_path / "a.png") as image:
         assert image.mode == ["L", "LA", "RGB", "RGBA"][n_channels - 1]
         np.testing.assert_array_equal(np.asarray(image).reshape(pixels.shape), pixels)
+
+
+def test_every_filter_is_undone_by_pillow(tmp_path: Path) -> None:
+    rng = np.random.default_rng(22)
+    walk = np.cumsum(np.cumsum(rng.integers(-1, 2, (600, 40, 3)), axis=0), axis=1)
+    pixels = (walk // 4).astype(np.uint8)
+    pixels[:50] = rng.integers(0, 256, (50, 40, 3))
+    pixels[50:100] = np.arange(40, dtype=np.uint8)[None, :, None] * 7
+    pixels[100:150] = pixels[100]
+    write_png(tmp_path / "a.png", pixels)
+    with Image.open(tmp_path / "a.png") as image:
+        np.testing.assert_array_equal(np.asarray(image), pixels)
+    assert set(filters_of((tmp_path / "a.png").read_bytes(), 40 * 3)) == {0, 1, 2, 3, 4}
+
+
+def test_filters_look_across_bands_of_rows(tmp_path: Path) -> None:
+    row = np.random.default_rng(23).integers(0, 256, (1, 40, 3), np.uint8)
+    data = encode_png(np.repeat(row, 600, axis=0))
+    assert filters_of(data, 40 * 3)[1:] == bytes([2]) * 599  # "up": nothing is left of any row but the first
+    (tmp_path / "a.png").write_bytes(data)
+    with Image.open(tmp_path / "a.png") as image:
+        assert np.all(np.asarray(image) == row)
+
+
+def filters_of(png: bytes, row_bytes: int) -> bytes:
+    """The filter of each row, from a file with one IDAT chunk."""
+    at = png.index(b"IDAT") - 4
+    size = int.from_bytes(png[at : at + 4], "big")
+    return zlib.decompress(png[at + 8 : at + 8 + size])[:: row_bytes + 1]
 
 
 def test_pillow_reads_back_16_bit_grey(tmp_path: Path) -> None:
@@ -69,8 +99,6 @@ def test_truncated_files_are_input_errors(tmp_path: Path, keep: int) -> None:
 def test_absurd_size_is_refused(tmp_path: Path) -> None:
     data = bytearray(encode_png(np.zeros((1, 1), np.uint8)))
     data[16:24] = (60000).to_bytes(4, "big") * 2
-    import zlib
-
     data[29:33] = zlib.crc32(data[12:29]).to_bytes(4, "big")
     (tmp_path / "huge.png").write_bytes(data)
     with pytest.raises(InputError):

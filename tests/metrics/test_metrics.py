@@ -120,6 +120,17 @@ def test_masked_pixels_do_not_count(reference: np.ndarray) -> None:
     assert result.reference_mean == pytest.approx(float(reference[:, :32].mean()), rel=1e-5)
 
 
+def test_flip_that_bleeds_out_of_the_mask_does_not_count(reference: np.ndarray) -> None:
+    mask = np.zeros(reference.shape[:2], bool)
+    mask[:, :32] = True
+    test, black = reference * 1.5, np.where(mask[..., None], reference, 0.0)
+    result = compare(test, reference, mask)
+    exposures = flip_exposures(reference[mask])
+    error = flip(np.where(mask[..., None], test, 0.0), black, exposures).error
+    assert error[~mask].max() > 0.0
+    assert result.flip == pytest.approx(float(error[mask].mean()), rel=1e-5)
+
+
 def test_pages_compare_as_one_image_does(reference: np.ndarray) -> None:
     test = reference * 1.2
     pages = compare(np.stack([test, test]), np.stack([reference, reference]))
