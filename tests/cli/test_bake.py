@@ -24,8 +24,8 @@ def job(tmp_path_factory):
     return BakeJob(
         scene="builtin:cornell",
         out=tmp_path_factory.mktemp("bake") / "cornell",
-        layout=LayoutOptions(resolution=64),
-        views=ViewOptions(n_pixels=48 * 48, reference_spp=16, full_spp=4, baked_spp=8),
+        layout=LayoutOptions(resolution=128),
+        views=ViewOptions(reference_spp=256, n_pixels=64 * 64, full_spp=4, baked_spp=128),
     )
 
 
@@ -41,6 +41,7 @@ def test_everything_is_in_one_folder(job, summary):
         "preview.png",
         "report.html",
         "scene.baked.glb",
+        "view.png",
     }
     assert sorted(summary.files) == sorted(path.name for path in job.out.iterdir())
     assert [path.name for path in job.out.parent.iterdir()] == [job.out.name]
@@ -70,15 +71,15 @@ def test_the_provenance_can_make_it_again(summary):
     origin = summary.record["provenance"]
     assert origin["seed"] == 0
     assert origin["config"]["bake"]["samples"] == 64
-    assert origin["config"]["layout"]["resolution"] == 64
+    assert origin["config"]["layout"]["resolution"] == 128
     assert re.fullmatch(r"[0-9a-f]{64}", origin["inputs"]["builtin:cornell"])
     assert origin["device"]["kind"] in ("cpu", "cuda")
 
 
 def test_the_bake_looks_like_its_reference(summary):
     found = summary.record["against_reference"]
-    assert found["mean_ratio"] == pytest.approx(1.0, abs=0.05)
-    assert found["relmse_noise_free"] < 0.1
+    assert found["mean_ratio"] == pytest.approx(1.0, abs=0.01)
+    assert found["relmse_noise_free"] < 0.005
 
 
 def test_the_map_is_the_one_that_was_measured(job, summary):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
 from importlib.metadata import PackageNotFoundError, metadata
@@ -29,12 +30,16 @@ def _normal(name: str) -> str:
 
 
 def _section(text: str, title: str) -> dict[str, str]:
-    """Package to licence, of one table."""
+    """Package to licence, of one table of Python packages."""
+    return {_normal(name): licence for name, licence in _table(text, title).items()}
+
+
+def _table(text: str, title: str) -> dict[str, str]:
     body = text.split(f"## {title}\n", 1)[1].split("\n## ", 1)[0]
     rows = [
         [cell.strip() for cell in line.strip("|").split("|")] for line in body.splitlines() if "|" in line
     ]
-    return {_normal(row[0]): row[1] for row in rows[2:]}
+    return {row[0]: row[1] for row in rows[2:]}
 
 
 @pytest.fixture(scope="module")
@@ -71,6 +76,15 @@ def test_the_core_table_is_the_core_install(text, declared):
 
 def test_every_declared_package_is_pinned(declared, pinned):
     assert set().union(*declared.values()) <= pinned
+
+
+def test_every_package_of_web_is_credited_with_its_locked_licence(text, repo_root):
+    web = repo_root / "web"
+    package = json.loads((web / "package.json").read_text(encoding="utf-8"))
+    locked = json.loads((web / "package-lock.json").read_text(encoding="utf-8"))["packages"]
+    wanted = {**package.get("dependencies", {}), **package.get("devDependencies", {})}
+    found = {name: locked[f"node_modules/{name}"]["license"] for name in wanted}
+    assert _table(text, "What the checks in web/ need") == found
 
 
 def test_pins_are_exact_and_name_no_address(repo_root):

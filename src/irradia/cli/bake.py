@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 @click.option("--fast-rays", is_flag=True, help="Faster intersection that may miss edges.")
 @click.option("--no-denoise", is_flag=True, help="Leave the noise in.")
 @click.option("--no-report", is_flag=True, help="Write no report, and render no reference for it.")
+@options.reference_spp_option
 @click.option("--compatible", is_flag=True, help="Write instances out, for loaders that can't read them.")
 @options.seed_option
 @options.device_option
@@ -72,6 +73,7 @@ def make_job(
     fast_rays: bool,
     no_denoise: bool,
     no_report: bool,
+    reference_spp: int,
     compatible: bool,
     seed: int,
     device: str,
@@ -100,7 +102,7 @@ def make_job(
             fast_rays=fast_rays,
             denoise=not no_denoise,
         ),
-        views=None if no_report else ViewOptions(seed=seed, fast_rays=fast_rays),
+        views=None if no_report else ViewOptions(reference_spp, seed=seed, fast_rays=fast_rays),
         compatible=compatible,
         device=device,  # type: ignore[arg-type]
         threads=threads,

@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from irradia.cli.bake_job import Baked, BakeJob
 from irradia.cli.memory import peak_memory_bytes
 from irradia.core import provenance
-from irradia.core.colour import preview_srgb8
+from irradia.core.colour import automatic_exposure_ev, preview_srgb8
 from irradia.core.files import write_text_atomic
 from irradia.core.progress import Progress
 from irradia.formats.lightmap import LightmapFile, make_lightmap, page_path, write_lightmap
@@ -47,6 +48,7 @@ def write_products(
         )
     record = bake_record(baked, lightmap, progress, origin)
     if baked.view is not None:
+        _write_picture(folder / "view.png", baked.view.baked)
         from irradia.cli.bake_report import report_data
         from irradia.report import write_report
 
@@ -116,6 +118,13 @@ def _provenance(job: BakeJob, scene: Scene, wall_s: float) -> dict[str, Any]:
         "bake", job.config(), seed=job.bake.seed, inputs=inputs, device=device, wall_s=wall_s
     )
     return made.to_dict()
+
+
+def _write_picture(path: Path, radiance: NDArray[np.float32]) -> None:
+    """What the report shows as baked, for use elsewhere."""
+    from irradia.formats.png import write_png
+
+    write_png(path, preview_srgb8(radiance, automatic_exposure_ev(radiance)))
 
 
 def _write_previews(path: Path, lightmap: LightmapFile) -> None:

@@ -19,7 +19,7 @@ from irradia.scene.load import LoadOptions
 from irradia.scene.types import Scene
 
 # What a bake may leave in its folder; what is left of an earlier run must not stand beside it.
-PRODUCTS = ("lightmap*.exr", "preview*.png", "scene.baked.glb", "bake.json", "report.html")
+PRODUCTS = ("lightmap*.exr", "preview*.png", "view.png", "scene.baked.glb", "bake.json", "report.html")
 
 
 @dataclass(frozen=True)

@@ -25,16 +25,16 @@ class ViewOptions:
     """The pictures of a report.
 
     Attributes:
-        n_pixels: About how many each picture has; its shape is the camera's.
         reference_spp: Samples per pixel of the diffuse reference, two halves together.
+        n_pixels: About how many each picture has; its shape is the camera's.
         full_spp: Samples per pixel with full materials, which is only looked at.
         baked_spp: Samples per pixel of the baked view: enough for smooth edges.
         seed: Root of all random numbers.
         fast_rays: Gives up watertight intersection for speed.
     """
 
-    n_pixels: int = 768 * 432
     reference_spp: int = 128
+    n_pixels: int = 768 * 432
     full_spp: int = 32
     baked_spp: int = 16
     seed: int = 0

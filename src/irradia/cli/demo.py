@@ -20,11 +20,14 @@ SCENE = "builtin:atrium"
     show_default=True,
     help="Folder for the results.",
 )
+@options.reference_spp_option
 @options.seed_option
 @options.device_option
 @options.threads_option
 @options.json_option
-def command(as_json: bool, out: Path, seed: int, device: str, threads: int | None) -> None:
+def command(
+    as_json: bool, out: Path, reference_spp: int, seed: int, device: str, threads: int | None
+) -> None:
     """Bake a scene of our own, with report."""
     from irradia.bake.lightmap import BakeOptions
     from irradia.cli.bake import describe
@@ -36,7 +39,7 @@ def command(as_json: bool, out: Path, seed: int, device: str, threads: int | Non
         scene=SCENE,
         out=out,
         bake=BakeOptions(seed=seed),
-        views=ViewOptions(seed=seed),
+        views=ViewOptions(reference_spp, seed=seed),
         device=device,  # type: ignore[arg-type]
         threads=threads,
     )

@@ -58,6 +58,15 @@ threads_option = click.option(
 )
 
 
+reference_spp_option = click.option(
+    "--reference-spp",
+    type=click.IntRange(2, MAX_SAMPLES),
+    default=128,
+    show_default=True,
+    help="Samples per pixel of the report's reference.",
+)
+
+
 def lighting_options(function: F) -> F:
     """``--env`` and its companions: light from outside the file."""
     return _apply(
