@@ -7,6 +7,7 @@ where it may (root, or sudo without a password) and otherwise prints the line to
 from __future__ import annotations
 
 import argparse
+import ctypes
 import hashlib
 import os
 import shutil
@@ -35,6 +36,7 @@ def main() -> int:
         check_python()
         make_environment()
         install_packages(wants_dev)
+        ensure_libatomic()
         ensure_libllvm()
         if wants_dev:
             ensure_node()
@@ -85,6 +87,16 @@ def install_packages(wants_dev: bool) -> None:
     if run(command, environment) != 0:
         raise SetupError("pip install failed; see above.")
     stamp("packages-dev" if wants_dev else "packages", label)
+
+
+def ensure_libatomic() -> None:
+    """A runtime library of GCC that Dr.Jit's wheels link to and minimal systems lack."""
+    if not sys.platform.startswith("linux"):
+        return
+    try:
+        ctypes.CDLL("libatomic.so.1")
+    except OSError:
+        install_system("libatomic1", needed_for="Dr.Jit")
 
 
 def ensure_libllvm() -> None:

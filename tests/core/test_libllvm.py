@@ -142,3 +142,17 @@ def test_the_module_itself_never_loads_dr_jit():
 
     code = "import irradia.core.device, sys; sys.exit(any(m in sys.modules for m in ('drjit', 'mitsuba')))"
     assert subprocess.run([sys.executable, "-c", code], env=os.environ, check=False).returncode == 0
+
+
+def test_the_reason_is_the_first_of_a_chain_of_errors():
+    from irradia.core.llvm_probe import root_cause
+
+    def import_with_a_missing_library():
+        try:
+            raise ImportError("libatomic.so.1: cannot open shared object file")
+        except ImportError:
+            raise NameError("name '_drjit_ext' is not defined")  # noqa: B904 - as Dr.Jit does
+
+    with pytest.raises(NameError) as caught:
+        import_with_a_missing_library()
+    assert root_cause(caught.value) == "ImportError: libatomic.so.1: cannot open shared object file"

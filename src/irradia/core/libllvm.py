@@ -156,8 +156,8 @@ def install_line() -> str:
     if sys.platform == "win32":
         return "winget install LLVM.LLVM"
     return (
-        "Debian, Ubuntu: sudo apt-get install libllvm19 · Fedora: sudo dnf install llvm-libs · "
-        "Arch: sudo pacman -S llvm-libs · without root: conda install llvmdev, "
+        "Debian, Ubuntu: sudo apt-get install libllvm19 libatomic1 · Fedora: sudo dnf install llvm-libs "
+        "libatomic · Arch: sudo pacman -S llvm-libs · without root: conda install llvmdev, "
         f"or set {VARIABLE} to a libLLVM of version {OLDEST_MAJOR} or newer"
     )
 

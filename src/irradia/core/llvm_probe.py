@@ -19,9 +19,13 @@ ANSWER = "works"
 
 def main() -> int:
     """Runs the kernels; returns the exit code."""
-    import mitsuba as mi
+    try:
+        import mitsuba as mi
 
-    mi.set_variant("llvm_ad_rgb")
+        mi.set_variant("llvm_ad_rgb")
+    except Exception as error:  # noqa: BLE001 - the answer is no, whatever the reason
+        print(root_cause(error), file=sys.stderr)
+        return 1
     salt = 1.0 + (time.time_ns() % 1_000_003) * 1e-6
     wrong = [check.__name__ for check in (gathers, selects, loops, traces) if not check(mi, salt)]
     if wrong:
@@ -29,6 +33,13 @@ def main() -> int:
         return 1
     print(ANSWER)
     return 0
+
+
+def root_cause(error: BaseException) -> str:
+    """The first of a chain of errors: Dr.Jit hides a missing system library behind another error."""
+    while error.__context__ is not None:
+        error = error.__context__
+    return f"{type(error).__name__}: {error}"
 
 
 def gathers(mi, salt: float) -> bool:
