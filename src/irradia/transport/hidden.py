@@ -1,8 +1,9 @@
 """Sub-samples inside solids: found by the back faces that they see, and replaced.
 
 A texel at the foot of a wall reaches under it. Its hidden part would darken it, and where solids
-overlap, light would wander from texel to texel through their inside. So a hidden sub-sample is
-replaced by a visible one of its texel; a texel that has none is invalid.
+overlap, light would wander from texel to texel through their inside. So a hidden sub-sample, one
+whose rays mostly meet back faces first, is replaced by a visible one of its texel; a texel that
+has none is invalid.
 """
 
 from __future__ import annotations
@@ -15,65 +16,73 @@ from irradia.transport.sampling import Sampler, cosine_hemisphere, to_world
 from irradia.transport.subsamples import Subsamples
 from irradia.transport.world import World
 
-_RAYS = 8  # from each sub-sample of a suspect
-_MORE_RAYS = 56  # where those disagree
+# Rays in all after each round, and how many backs among them leave no doubt either way.
+_ROUNDS = ((4, 0, 4), (16, 3, 13), (64, 32, 33))
 _SEED = 0x51DE  # the directions are fixed: they decide on places, not on light
 
 
 def drop_hidden(world: World, subsamples: Subsamples) -> NDArray[np.float32]:
-    """Replaces hidden sub-samples, those whose rays mostly meet back faces first.
+    """Replaces hidden sub-samples by others of their texel.
 
-    Texels of which no ray in one round over the sub-samples met a back face are not looked at
-    again.
+    One ray from every sub-sample finds the suspects. Where all of a texel's rays met backs, it is
+    hidden; where some did, their sub-samples are looked at closely, and where that confirms one,
+    the texel's others as well.
 
     Returns:
         (N,) share of each texel's sub-samples that are hidden; 1 makes the texel invalid.
     """
-    hidden_share = np.zeros(subsamples.n_texels, np.float32)
-    every = dr.arange(mi.UInt32, subsamples.n_texels)
-    suspects = dr.compress(_count_backs(world, subsamples, every, mi.UInt32(0), subsamples.count, 1) > 0.0)
-    if dr.width(suspects) == 0:
-        return hidden_share
-    hidden = np.stack([_is_hidden(world, subsamples, suspects, n) for n in range(subsamples.count)])
-    hidden_share[np.array(suspects)] = hidden.mean(axis=0)
-    _repeat_visible(subsamples, np.array(suspects), hidden)
-    return hidden_share
+    suspect = _first_round(world, subsamples)
+    hidden = np.zeros_like(suspect)
+    hidden[suspect.all(axis=1)] = True
+    partly = suspect & ~hidden
+    hidden[partly] = _are_hidden(world, subsamples, partly)
+    neighbours = ~suspect & (hidden.any(axis=1) & ~hidden.all(axis=1))[:, None]
+    hidden[neighbours] = _are_hidden(world, subsamples, neighbours)
+    _repeat_visible(subsamples, hidden)
+    return hidden.mean(axis=1, dtype=np.float32)
 
 
-def _is_hidden(world: World, subsamples: Subsamples, texel: mi.UInt32, number: int) -> NDArray[np.bool_]:
-    """Whether one sub-sample of each texel mostly sees back faces: few rays, more where they disagree."""
-    per_subsample = _RAYS + _MORE_RAYS
-    first = dr.opaque(mi.UInt32, number * per_subsample)
-    backs = np.array(_count_backs(world, subsamples, texel, first, _RAYS, per_subsample))
-    hidden = backs > 0.5 * _RAYS
-    unsure = np.flatnonzero((backs > 1) & (backs < _RAYS))
-    if len(unsure):
-        some = mi.UInt32(np.array(texel)[unsure])
-        backs[unsure] += np.array(
-            _count_backs(world, subsamples, some, first + _RAYS, _MORE_RAYS, per_subsample)
-        )
-        hidden[unsure] = backs[unsure] > 0.5 * per_subsample
+def _first_round(world: World, subsamples: Subsamples) -> NDArray[np.bool_]:
+    """(N, S) whether a single ray from each sub-sample meets a back face."""
+    texel = dr.arange(mi.UInt32, subsamples.n_texels)
+    suspect = np.empty((subsamples.n_texels, subsamples.count), np.bool_)
+    for number in range(subsamples.count):
+        place = dr.opaque(mi.UInt32, number)
+        backs = _count_backs(world, subsamples, texel, place, dr.opaque(mi.UInt32, number), 1)
+        suspect[:, number] = np.array(backs) > 0.0
+    return suspect
+
+
+def _are_hidden(world: World, subsamples: Subsamples, places: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Whether the sub-samples chosen by a mask (N, S) mostly see backs; more rays where in doubt."""
+    texel, number = (index.astype(np.uint32) for index in np.nonzero(places))
+    hidden = np.zeros(len(texel), np.bool_)
+    unsure, backs, done = np.arange(len(texel)), np.zeros(len(texel), np.float32), 0
+    for n_rays, few, many in _ROUNDS:
+        if len(unsure) == 0:
+            break
+        lanes = mi.UInt32(texel[unsure]), mi.UInt32(number[unsure])
+        first = lanes[1] * _ROUNDS[-1][0] + dr.opaque(mi.UInt32, done)
+        backs = backs + np.array(_count_backs(world, subsamples, *lanes, first, n_rays - done))
+        done = n_rays
+        hidden[unsure] = backs >= many
+        doubtful = (backs > few) & (backs < many)
+        unsure, backs = unsure[doubtful], backs[doubtful]
     return hidden
 
 
 @dr.syntax
 def _count_backs(
-    world: World,
-    subsamples: Subsamples,
-    texel: mi.UInt32,
-    first: mi.UInt32,
-    n_rays: int,
-    per_subsample: int,
+    world: World, subsamples: Subsamples, texel: mi.UInt32, number: mi.UInt32, first: mi.UInt32, n_rays: int
 ) -> mi.Float:
-    """How many of rays ``first`` to ``first + n_rays`` meet a back face first.
+    """How many rays from a sub-sample meet a back face first.
 
-    Ray k starts from sub-sample k / per_subsample. All texels draw the same directions about their
-    normals, which keeps rays coherent.
+    All texels draw the same directions about their normals, which keeps rays coherent.
     """
+    point = subsamples.point(world, texel, number)
     backs = dr.zeros(mi.Float, dr.width(texel))
     k, last = mi.UInt32(first), first + dr.opaque(mi.UInt32, n_rays)
     while k < last:
-        point = subsamples.point(world, texel, k // per_subsample)
         u = Sampler(mi.UInt32(k), mi.UInt32(_SEED)).next_2d()
         direction = to_world(point.ns, cosine_hemisphere(u))
         above = dr.dot(direction, point.ng) > 0.0
@@ -83,14 +92,15 @@ def _count_backs(
     return backs
 
 
-def _repeat_visible(subsamples: Subsamples, texel: NDArray[np.uint32], hidden: NDArray[np.bool_]) -> None:
-    """Overwrites the hidden sub-samples (S, M) of texels (M,) by their visible ones, in turn."""
-    visible_first = np.argsort(hidden, axis=0, kind="stable").astype(np.uint32)
-    n_visible = (~hidden).sum(axis=0)
+def _repeat_visible(subsamples: Subsamples, hidden: NDArray[np.bool_]) -> None:
+    """Overwrites hidden sub-samples (N, S) by visible ones of their texels, in turn."""
+    texel = np.flatnonzero(hidden.any(axis=1) & ~hidden.all(axis=1)).astype(np.uint32)
+    hidden = hidden[texel]
+    visible_first = np.argsort(hidden, axis=1, kind="stable").astype(np.uint32)
+    n_visible = (~hidden).sum(axis=1)
     for number in range(subsamples.count):
-        wanting = hidden[number] & (n_visible > 0)
-        if wanting.any():
-            turn = number % n_visible[wanting]
-            source = visible_first[turn, np.flatnonzero(wanting)]
+        wanting = np.flatnonzero(hidden[:, number])
+        if len(wanting):
+            source = visible_first[wanting, number % n_visible[wanting]]
             target = dr.opaque(mi.UInt32, number)
             subsamples.copy(mi.UInt32(texel[wanting]), mi.UInt32(source), target)

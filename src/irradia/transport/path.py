@@ -19,7 +19,7 @@ from typing import Protocol
 
 from irradia.transport.backend import dr, mi
 from irradia.transport.geometry import Hit, SurfacePoint
-from irradia.transport.materials import DOUBLE_SIDED, FILTERS, UNLIT
+from irradia.transport.materials import DOUBLE_SIDED, EMISSIVE, FILTERS, UNLIT
 from irradia.transport.sampling import Sampler, cosine_hemisphere, to_world
 from irradia.transport.world import HAS_TEXEL, TriangleRecord, World
 
@@ -121,10 +121,44 @@ def _advance(world: World, ray: Segment, cache: LightCache | None, cull_backs: b
         first = missed & (ray.bounces == 0)
         sky = dr.select(first, world.lights.environment.backdrop(ray.direction, first), sky)
     ray.radiance += dr.select(missed, ray.throughput * sky * _ray_weight(ray, sky_pdf), 0.0)
-    active = ray.active & hit.valid
 
-    record = world.record(hit.triangle, hit.bary, active)
+    # ---- on a surface: most are opaque, shine not themselves, and their light is known ----
+    met = ray.active & hit.valid
+    record = world.record(hit.triangle, hit.bary, met)
     back = dr.dot(record.ng, ray.direction) > 0.0
+    ray.active = mi.Bool(False)
+    if cache is None:
+        return _meet(world, ray, hit, record, back, met, cache, cull_backs)
+    plain = met & ((record.flags & (FILTERS | EMISSIVE | UNLIT)) == 0)
+    known = plain & ~back & ((record.flags & HAS_TEXEL) != 0)
+    ray.radiance += dr.select(known, ray.throughput * cache.outgoing(world, hit, record, known), 0.0)
+    special = met & ~known
+    if not cull_backs:
+        special &= ~(plain & back & ((record.flags & DOUBLE_SIDED) == 0))
+    if world.plain and not cull_backs:
+        return ray
+
+    # ---- the others, jumped over by packets that have none ----
+    def meet(ray: Segment, hit: Hit, record: TriangleRecord, back: mi.Bool) -> tuple[Segment]:
+        return (_meet(world, ray, hit, record, back, mi.Bool(True), cache, cull_backs),)
+
+    def skip(ray: Segment, *_: object) -> tuple[Segment]:
+        return (ray,)
+
+    return dr.if_stmt((ray, hit, record, back), special, meet, skip, label="special surface")[0]
+
+
+def _meet(
+    world: World,
+    ray: Segment,
+    hit: Hit,
+    record: TriangleRecord,
+    back: mi.Bool,
+    active: mi.Bool,
+    cache: LightCache | None,
+    cull_backs: bool,
+) -> Segment:
+    """A surface of any kind: passes light, emits, blocks, knows its light or sends the path on."""
     one_sided = (record.flags & DOUBLE_SIDED) == 0
 
     # ---- let through ----
@@ -146,27 +180,24 @@ def _advance(world: World, ray: Segment, cache: LightCache | None, cull_backs: b
     cos_light = dr.dot(record.ng, ray.direction) * dr.rsqrt(dr.maximum(dr.squared_norm(record.ng), 1e-37))
     light_pdf = world.lights.area_pdf(hit.triangle, ray.travelled, cos_light, stops)
     emitted = world.emission(hit.triangle, hit.bary, back, stops)
-    ray.radiance += dr.select(
-        stops, ray.throughput * emitted * (stop_weight * _ray_weight(ray, light_pdf)), 0.0
-    )
+    weight = stop_weight * _ray_weight(ray, light_pdf)
+    ray.radiance += dr.select(stops, ray.throughput * emitted * weight, 0.0)
 
     # ---- a back reflects nothing; a mapped front may know its light ----
-    blocked = stops & back & one_sided
-    ends = blocked | (stops & ((record.flags & UNLIT) != 0))
+    ends = stops & ((back & one_sided) | ((record.flags & UNLIT) != 0))
     if cache is not None:
         known = stops & ~ends & ~back & ((record.flags & HAS_TEXEL) != 0)
         ray.radiance += dr.select(known, ray.throughput * cache.outgoing(world, hit, record, known), 0.0)
         ends |= known
 
     # ---- otherwise the path goes on ----
-    ray.active = mi.Bool(passes)  # a copy: |= below works in place
-    if cache is None or not world.straight or cull_backs:
-        bounces = stops & ~ends
-        ray = _bounce(world, ray, hit, back, stop_weight, bounces)
-        beyond = world.geometry.step_past(ray.origin, ray.direction, hit.t)
-        ray.origin = dr.select(passes, beyond, ray.origin)
-        ray.segments += 1
-        ray.active &= ray.segments < _MAX_SEGMENTS
+    if cache is not None and world.straight and not cull_backs:
+        return ray
+    ray = _bounce(world, ray, hit, back, stop_weight, stops & ~ends)
+    beyond = world.geometry.step_past(ray.origin, ray.direction, hit.t)
+    ray.origin = dr.select(passes, beyond, ray.origin)
+    ray.segments += 1
+    ray.active = (ray.active | passes) & (ray.segments < _MAX_SEGMENTS)
     return ray
 
 
@@ -199,7 +230,7 @@ def _bounce(
     ray.nee_ratio = dr.select(goes_on, 1.0, ray.nee_ratio)
     ray.travelled = dr.select(goes_on, 0.0, ray.travelled)
     ray.bounces = dr.select(active, ray.bounces + 1, ray.bounces)
-    ray.active |= goes_on
+    ray.active = goes_on
     return ray
 
 

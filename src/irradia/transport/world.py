@@ -80,6 +80,11 @@ class World:
         """Whether every ray's first hit ends it, given a lightmap to read."""
         return self.fully_mapped and not self.filters and not self.double_sided
 
+    @property
+    def plain(self) -> bool:
+        """Whether, on top of that, no surface shines by itself."""
+        return self.straight and not self._emits
+
     def record(self, triangle: mi.UInt32, bary: mi.Point2f, active: mi.Bool) -> TriangleRecord:
         """The triangle's record, its lightmap position interpolated."""
         a = dr.gather(mi.Vector4f, self._records, 3 * triangle, active)
