@@ -20,7 +20,7 @@ Colour = tuple[int, int, int]
 def plaster(size_px: int = 512) -> U8:
     """Warm lime plaster, clouded, with a fine grain."""
     tone = 0.60 * cloud(size_px, "plaster", slope=1.7) + 0.40 * cloud(size_px, "plaster-grain", slope=0.7)
-    return ramp(tone, [(206, 178, 138), (224, 200, 163), (236, 217, 186)])
+    return ramp(tone, [(206, 186, 158), (224, 207, 182), (236, 223, 203)])
 
 
 def limestone(size_px: int = 512) -> U8:
@@ -28,7 +28,7 @@ def limestone(size_px: int = 512) -> U8:
     beds = cloud(size_px, "beds", slope=1.8, stretch=4.0).T
     tone = 0.5 * beds + 0.5 * cloud(size_px, "limestone", slope=1.0)
     pits = cloud(size_px, "pits", slope=0.6, lowest=12) > 0.985
-    return ramp(np.where(pits, 0.35 * tone, tone), [(172, 155, 127), (205, 190, 163), (224, 213, 190)])
+    return ramp(np.where(pits, 0.35 * tone, tone), [(174, 162, 141), (206, 196, 178), (225, 217, 202)])
 
 
 def ashlar(size_px: int = 512) -> U8:
@@ -36,15 +36,15 @@ def ashlar(size_px: int = 512) -> U8:
     block, mortar = _bond(size_px, n_rows=4, n_columns=2, joint=0.010)
     tone = 0.30 * cloud(size_px, "ashlar", slope=1.3) + 0.25 * cloud(size_px, "ashlar-grain", slope=0.7)
     tone = np.where(mortar, 0.02, 0.15 + tone + 0.30 * _tones("ashlar-tones", block))
-    return ramp(tone, [(128, 110, 84), (188, 166, 130), (208, 190, 156), (224, 211, 184)])
+    return ramp(tone, [(128, 114, 94), (190, 174, 148), (210, 197, 173), (226, 216, 196)])
 
 
 def brick(size_px: int = 512) -> U8:
     """Thin hand-made bricks, 16 courses to the texture, pale mortar."""
     unit, mortar = _bond(size_px, n_rows=16, n_columns=4, joint=0.007)
     tone = 0.35 * cloud(size_px, "brick", slope=0.9) + 0.55 * _tones("brick-tones", unit)
-    bricks = ramp(tone, [(134, 76, 55), (176, 108, 78), (198, 138, 104), (208, 160, 126)], levels=128)
-    lime = ramp(cloud(size_px, "mortar", slope=0.8), [(190, 172, 142), (212, 197, 170)], levels=64)
+    bricks = ramp(tone, [(138, 88, 70), (172, 118, 96), (192, 142, 116), (206, 166, 140)], levels=128)
+    lime = ramp(cloud(size_px, "mortar", slope=0.8), [(192, 178, 154), (214, 202, 180)], levels=64)
     return np.where(mortar[..., None], lime, bricks)
 
 
@@ -58,6 +58,12 @@ def red_marble(size_px: int = 512) -> U8:
     """Deep red marble, clouded, with pale veins."""
     tone = 0.55 * cloud(size_px, "red-cloud", slope=1.4) + 0.75 * veins(size_px, "red-veins", sharpness=26)
     return ramp(tone, [(74, 26, 22), (118, 46, 36), (150, 74, 56), (214, 178, 156)])
+
+
+def pink_marble(size_px: int = 512) -> U8:
+    """Rose limestone, flecked and clouded."""
+    tone = 0.7 * cloud(size_px, "pink-cloud", slope=1.2) + 0.45 * veins(size_px, "pink-veins", sharpness=22)
+    return ramp(tone, [(176, 122, 100), (202, 152, 128), (220, 184, 162), (238, 220, 204)])
 
 
 def green_marble(size_px: int = 512) -> U8:
@@ -76,7 +82,7 @@ def court_floor(size_px: int = 1024) -> U8:
     layers: list[tuple[NDArray[np.bool_], U8]] = [
         (square > -1, _warm(white)),
         (square > 0.91, _reduced(green_marble())),
-        ((diamond > 1.05) & (square < 0.83), _reduced(red_marble())),
+        ((diamond > 1.05) & (square < 0.83), _reduced(pink_marble())),
         (diamond < 0.88, _reduced(green_marble())),
         (diamond < 0.82, _warm(white)),
         (_star(x, y), _reduced(red_marble())),
@@ -99,7 +105,7 @@ def tile(size_px: int = 512) -> U8:
     index = np.floor(row).astype(int) * 4 + np.floor(column).astype(int)
     x, y = np.abs(column % 1 - 0.5), np.abs(row % 1 - 0.5)
     tone = 0.45 * cloud(size_px, "tile", slope=1.2) + 0.5 * _tones("tile-tones", index)
-    clay = ramp(tone, [(138, 74, 48), (176, 104, 70), (196, 128, 92)], levels=160)
+    clay = ramp(tone, [(146, 92, 68), (178, 118, 90), (200, 144, 114)], levels=160)
     clay[x + y > 0.80] = (88, 84, 78)
     grout = (np.maximum(x, y) > 0.488) & (x + y <= 0.80) | (np.abs(x + y - 0.80) < 0.014)
     clay[grout] = (182, 166, 142)

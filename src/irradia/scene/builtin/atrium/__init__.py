@@ -14,6 +14,7 @@ from irradia.scene.builtin.atrium.columns import add_columns
 from irradia.scene.builtin.atrium.furnishing import add_furnishing
 from irradia.scene.builtin.atrium.galleries import add_galleries
 from irradia.scene.builtin.atrium.materials import add_materials
+from irradia.scene.builtin.atrium.ornament import add_ornament
 from irradia.scene.builtin.atrium.stairs import add_stairs
 from irradia.scene.builtin.atrium.vaults import add_vaults
 from irradia.scene.builtin.atrium.walls import add_walls
@@ -22,9 +23,9 @@ from irradia.scene.builtin.mesh import look_at
 from irradia.scene.gltf.document import GltfDocument
 from irradia.scene.types import Camera, Light
 
-SUN_ELEVATION_DEG, SUN_AZIMUTH_DEG, TURBIDITY = 52.0, 148.0, 2.5
-SUN_LUX = (98000.0, 90000.0, 77000.0)
-"""What the clear sky of that turbidity lets through."""
+SUN_ELEVATION_DEG, SUN_AZIMUTH_DEG, TURBIDITY = 60.0, 150.0, 2.5
+SUN_LUX = (116690.0, 96100.0, 74080.0)
+"""What the sky of that turbidity lets through: the sun of ``scene.sky`` at this elevation."""
 
 
 def build() -> GltfDocument:
@@ -37,6 +38,7 @@ def build() -> GltfDocument:
         add_arcades,
         add_vaults,
         add_walls,
+        add_ornament,
         add_stairs,
         add_cloth,
         add_furnishing,
@@ -59,8 +61,8 @@ def _add_sun(scene: SceneBuilder) -> None:
 
 def _add_cameras(scene: SceneBuilder) -> None:
     views = {
-        "court": ((-10.1, 1.75, 2.6), (2.2, 3.75, -1.0), 62),
-        "gallery": ((-10.4, 6.95, -6.1), (6.0, 5.2, -3.6), 58),
+        "court": ((-10.35, 1.7, 2.6), (3.0, 3.75, -1.2), 60),
+        "gallery": ((-10.9, 6.95, -6.0), (4.0, 5.6, -3.4), 60),
         "stairs": ((2.2, 2.2, -2.0), (13.0, 4.4, 0.6), 60),
         "arcade": ((9.6, 1.75, -7.4), (-6.0, 1.9, -5.4), 60),
     }

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from irradia.scene.builtin import profiles
 from irradia.scene.builtin.arch import arch_panel, jambs, soffit
 from irradia.scene.builtin.atrium import plan
 from irradia.scene.builtin.atrium.materials import Materials
+from irradia.scene.builtin.atrium.ornament import Z_FROM_Y
 from irradia.scene.builtin.builder import SceneBuilder
 from irradia.scene.builtin.mesh import Array, Mesh, join
 from irradia.scene.builtin.shapes import bevelled_box, box, disc
 from irradia.scene.builtin.sweep import lathe, moulding, square_moulding, sweep_arc
+
+_HALF_WALL = plan.LOWER_WALL / 2
 
 
 def add_arcades(scene: SceneBuilder, materials: Materials) -> None:
@@ -24,7 +29,11 @@ def add_arcades(scene: SceneBuilder, materials: Materials) -> None:
         scene.node(f"upper arch {k}", mesh=upper, translation=(x, 0, z), yaw_deg=yaw)
     medallion = scene.mesh("medallion", *spandrel_medallion(materials))
     for k, (x, z, yaw) in enumerate(plan.column_spots(plan.BAY)):
-        scene.node(f"medallion {k}", mesh=medallion, translation=(x, 0, z), yaw_deg=yaw)
+        x, z = x + _HALF_WALL * math.sin(math.radians(yaw)), z + _HALF_WALL * math.cos(math.radians(yaw))
+        scene.node(f"medallion {k}", mesh=medallion, translation=(x, 4.36, z), yaw_deg=yaw)
+    for k, z in enumerate((-3.62, 3.62)):
+        place = (plan.HALF_X - plan.EAST_WALL / 2, 7.35, z)
+        scene.node(f"great medallion {k}", mesh=medallion, translation=place, yaw_deg=-90, scale=1.7)
     east = scene.mesh("great arch", *great_arch(materials))
     scene.node("great arch", mesh=east, translation=(plan.HALF_X, 0, 0), yaw_deg=-90)
     scene.object("string course", (string_course(), materials.limestone))
@@ -36,11 +45,11 @@ def lower_bay(materials: Materials) -> list[tuple[Mesh, int]]:
     """A bay of the ground floor: wall of ashlar, moulded archivolt, keystone; front +Z."""
     half = plan.LOWER_WALL / 2
     radius, spring = plan.ARCH_RADIUS, plan.SPRING_Y
-    panel = arch_panel(plan.BAY / 2, spring, plan.STRING_Y + 0.05, radius, spring, 24)
+    panel = arch_panel(plan.BAY / 2, spring, plan.STRING_Y + 0.05, radius, spring, 20)
     stone = join(
-        sweep_arc(archivolt(0.20, 0.07), radius, 24).moved(0, spring, half),
+        sweep_arc(archivolt(0.20, 0.07), radius, 20).moved(0, spring, half),
         keystone(radius, 0.30, half).moved(y=spring),
-        soffit(radius, spring, plan.LOWER_WALL, 24).moved(z=half),
+        soffit(radius, spring, plan.LOWER_WALL, 20).moved(z=half),
     )
     return [
         (panel.moved(z=half), materials.ashlar),
@@ -53,11 +62,11 @@ def upper_bay(materials: Materials) -> list[tuple[Mesh, int]]:
     """Half a bay of the gallery: a small arch in plaster with a stone archivolt; front +Z."""
     half = plan.UPPER_WALL / 2
     radius, spring = plan.UPPER_RADIUS, plan.UPPER_SPRING_Y
-    panel = arch_panel(plan.UPPER_BAY / 2, spring, plan.CEILING_Y, radius, spring, 16)
+    panel = arch_panel(plan.UPPER_BAY / 2, spring, plan.CEILING_Y, radius, spring, 14)
     stone = join(
-        sweep_arc(archivolt(0.12, 0.045), radius, 16).moved(0, spring, half),
+        sweep_arc(archivolt(0.12, 0.045, n=2), radius, 14).moved(0, spring, half),
         keystone(radius, 0.19, half).moved(y=spring),
-        soffit(radius, spring, plan.UPPER_WALL, 16).moved(z=half),
+        soffit(radius, spring, plan.UPPER_WALL, 14).moved(z=half),
     )
     return [
         (panel.moved(z=half), materials.plaster),
@@ -89,7 +98,7 @@ def great_arch(materials: Materials) -> list[tuple[Mesh, int]]:
     ]
 
 
-def archivolt(width: float, depth: float) -> Array:
+def archivolt(width: float, depth: float, n: int = 4) -> Array:
     """Profile of the band round an arch, from the soffit's edge outward: (proud of the wall, radial)."""
     w, d = width, depth
     return profiles.chain(
@@ -98,7 +107,7 @@ def archivolt(width: float, depth: float) -> Array:
         (0.45 * d, 0.34 * w),
         (0.62 * d, 0.36 * w),
         (0.62 * d, 0.66 * w),
-        profiles.cyma(0.64 * d, d, 0.68 * w, 0.20 * w, 5),
+        profiles.cyma(0.64 * d, d, 0.68 * w, 0.20 * w, n),
         (d, 0.94 * w),
         (0.0, w),
     )
@@ -121,21 +130,19 @@ def keystone(radius: float, height: float, wall_half: float, width: float = 0.18
 
 
 def spandrel_medallion(materials: Materials) -> list[tuple[Mesh, int]]:
-    """A roundel of green marble in a moulded ring, over each column; front +Z, placed on the axis."""
+    """A roundel of green marble in a moulded ring, on a wall at z = 0; front +Z."""
     ring = profiles.chain(
         (0.335, -0.02), (0.335, 0.02), profiles.ovolo(0.335, 0.335, 0.02, 0.001, 1), (0.32, 0.045),
         (0.285, 0.05), (0.25, 0.035), (0.235, 0.012),
     )  # fmt: skip
-    turn = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])  # +Y → +Z
-    place = (0.0, 4.36, plan.LOWER_WALL / 2)
     return [
-        (lathe(ring, 20).transformed(turn).moved(*place), materials.limestone),
-        (disc(0.24, 0.012, 20).transformed(turn).moved(*place), materials.green_marble),
+        (lathe(ring, 16).transformed(Z_FROM_Y), materials.limestone),
+        (disc(0.24, 0.012, 16).transformed(Z_FROM_Y), materials.green_marble),
     ]
 
 
 def string_course() -> Mesh:
-    """The moulding between the storeys, from the great arch's one side round the court to the other."""
+    """The moulding between the storeys, from the great arch's wall round the court and back to it."""
     h = plan.GALLERY_Y - plan.STRING_Y
     profile = profiles.chain(
         (0.0, 0.0),
@@ -151,8 +158,7 @@ def string_course() -> Mesh:
     )
     half_z = plan.HALF_Z - plan.LOWER_WALL / 2
     west, east = -plan.HALF_X + plan.LOWER_WALL / 2, plan.HALF_X - plan.EAST_WALL / 2
-    edge = plan.GREAT_RADIUS + 0.42
-    path = [(east, edge), (east, half_z), (west, half_z), (west, -half_z), (east, -half_z), (east, -edge)]
+    path = [(east, half_z), (west, half_z), (west, -half_z), (east, -half_z)]
     return moulding(profile, [(x, plan.STRING_Y, z) for x, z in path])
 
 

@@ -25,7 +25,7 @@ _NORTH_THROWS = (
 )
 _SOUTH_THROWS = (("ultramarine", -7.2), ("emerald", -2.4), ("violet", 2.4), ("saffron", 5.6))
 _CURTAINS = (("ultramarine", -3.2, -1), ("crimson", 0.0, 1), ("saffron", 3.2, -1), ("emerald", 6.4, 1))
-_SAILS = (("crimson", -6.9, 1.9), ("saffron", 0.6, 1.7))
+_SAILS = (("saffron", -7.4, 1.8), ("crimson", -0.4, 1.8), ("ultramarine", 6.0, 1.8))
 
 
 def add_cloth(scene: SceneBuilder, materials: Materials) -> None:
@@ -53,7 +53,7 @@ def _throw(name: str) -> Mesh:
     rng = Seed(1).child(name).numpy()
     half_width, front, behind = 0.62, rng.uniform(1.7, 2.3), 0.55
     path, drop = _over_rail(front, behind)
-    across = np.linspace(-1, 1, 23)
+    across = np.linspace(-1, 1, 19)
     phase = rng.uniform(0, 2 * np.pi)
     folds = 0.035 * np.sin(3.1 * np.pi * across + phase) + 0.018 * np.sin(7.3 * np.pi * across + 2 * phase)
     loose = np.clip(drop / 1.2, 0, 1) ** 1.3
@@ -71,7 +71,7 @@ def _throw(name: str) -> Mesh:
 def _over_rail(front: float, behind: float) -> tuple[Array, Array]:
     """(N, 2) of (z, y) from the court's hem over the rail and down behind; metres below the rail."""
     gap, top = 0.165, RAIL_M + 0.012
-    up = np.linspace(top - front, top - 0.10, 15)
+    up = np.linspace(top - front, top - 0.10, 12)
     angle = np.linspace(0, np.pi, 7)
     over = np.stack([gap * np.cos(angle), top - 0.10 + 0.10 * np.sin(angle)], axis=1)
     down = np.linspace(top - 0.10, top - behind, 5)
@@ -88,13 +88,13 @@ def _over_rail(front: float, behind: float) -> tuple[Array, Array]:
 def _curtain(side: int) -> Mesh:
     """A curtain across an arch, gathered to one side (±1) by a tie, hanging in folds; front +Z."""
     top, tie, hem = 3.20, 1.35, plan.ARCADE_Y + 0.06
-    heights = np.concatenate([np.linspace(hem, tie, 9)[:-1], np.linspace(tie, top, 15)])
+    heights = np.concatenate([np.linspace(hem, tie, 9)[:-1], np.linspace(tie, top, 12)])
     reach = np.clip((heights - tie) / (top - tie), 0, 1)
     below = np.clip((tie - heights) / (tie - hem), 0, 1)
     edge = plan.ARCH_RADIUS - 0.06
     outer = edge - 0.10 * np.sin(np.pi * reach) - 0.05 * (below + (reach <= 0))
     width = 0.20 + (2 * edge - 0.35) * reach**1.7 + 0.34 * np.sqrt(below)
-    across = np.linspace(0, 1, 57)
+    across = np.linspace(0, 1, 49)
     x = side * (outer[None] - width[None] * across[:, None])
     depth = 0.030 + 0.055 * (1 - reach) ** 0.7
     fold = np.sin(2 * np.pi * 8 * across)[:, None] + 0.35 * np.sin(2 * np.pi * 3 * across + 1.0)[:, None]

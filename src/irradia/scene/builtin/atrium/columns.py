@@ -31,7 +31,7 @@ def add_columns(scene: SceneBuilder, materials: Materials) -> None:
         (shaft(0.115, 0.10, 0.24, upper_height - 0.32, n_sides=10), materials.red_marble),
         (
             join(
-                base(0.115, 0.24, 10, n=3), plain_capital(0.10, upper_height - 0.32, upper_height, 0.25, 10)
+                base(0.115, 0.24, 10, n=2), plain_capital(0.10, upper_height - 0.32, upper_height, 0.25, 10)
             ),
             materials.limestone,
         ),
@@ -71,7 +71,7 @@ def base(radius: float, height: float, n_sides: int, n: int = 4) -> Mesh:
 
 def shaft(bottom_radius: float, top_radius: float, low_y: float, high_y: float, n_sides: int) -> Mesh:
     """A tapering shaft: the lower third upright, then a slow curve inward; an astragal at its top."""
-    t = np.linspace(0, 1, 7)
+    t = np.linspace(0, 1, 6)
     radius = bottom_radius - (bottom_radius - top_radius) * np.clip((t - 0.25) / 0.75, 0, 1) ** 1.6
     curve = np.stack([radius, low_y + (high_y - 0.06 - low_y) * t], axis=1)
     ring = profiles.torus(top_radius + 0.004, high_y - 0.06, 0.045, 4)
@@ -92,7 +92,7 @@ def capital(radius: float, low_y: float, high_y: float, half_abacus: float, n_si
         blade = leaf(spine, 0.135 - 0.02 * row, 0.016)
         leaves += [blade.turned(turn + 360 / n * k) for k in range(n)]
     reach = half_abacus * 0.80
-    scroll = sphere(0.055, 8, 6)
+    scroll = sphere(0.055, 7, 5)
     scrolls = [scroll.moved(x * reach, top - 0.05, z * reach) for x in (-1, 1) for z in (-1, 1)]
     return join(lathe(bell, n_sides), *leaves, *scrolls, _abacus(half_abacus, top, high_y))
 
@@ -101,8 +101,8 @@ def plain_capital(radius: float, low_y: float, high_y: float, half_abacus: float
     """A cushion capital: necking, a swelling bell, an abacus."""
     abacus = 0.10
     top = high_y - abacus
-    bell = profiles.cyma(radius + 0.012, half_abacus * 0.86, low_y + 0.05, top - low_y - 0.05, 7)
-    profile = profiles.chain(profiles.torus(radius, low_y, 0.035, 4), (radius + 0.012, low_y + 0.05), bell)
+    bell = profiles.cyma(radius + 0.012, half_abacus * 0.86, low_y + 0.05, top - low_y - 0.05, 5)
+    profile = profiles.chain(profiles.torus(radius, low_y, 0.035, 3), (radius + 0.012, low_y + 0.05), bell)
     return join(lathe(profile, n_sides), _abacus(half_abacus, top, high_y))
 
 
@@ -144,7 +144,7 @@ def _abacus(half: float, low_y: float, high_y: float) -> Mesh:
 
 def _leaf_spine(foot: float, y: float, height: float, curl: float) -> Array:
     """(N, 2) of (outward, height): up along the bell, then out and over."""
-    t = np.linspace(0, 1, 5)
+    t = np.linspace(0, 1, 4)
     out = foot + curl * t**3 + 0.02 * np.sin(np.pi * t)
     up = y + height * (t - 0.22 * np.clip((t - 0.72) / 0.28, 0, 1) ** 2)
     return np.stack([out, up], axis=1)

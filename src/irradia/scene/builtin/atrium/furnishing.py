@@ -16,14 +16,14 @@ from irradia.scene.builtin.sweep import lathe, moulding
 
 BASIN_X = -2.9
 _POTS = (
-    (-9.3, -3.4),
-    (-9.3, 3.4),
-    (-2.9, -3.5),
-    (-2.9, 3.5),
-    (3.6, -3.4),
-    (3.6, 3.4),
-    (6.7, -2.7),
-    (6.7, 2.7),
+    (-6.3, -3.55),
+    (-6.3, 3.55),
+    (0.5, -3.55),
+    (0.5, 3.55),
+    (3.7, -3.55),
+    (3.7, 3.55),
+    (6.9, -2.6),
+    (6.9, 2.6),
 )
 _LANTERN_BAYS = (-9.6, -3.2, 3.2, 9.6)
 
@@ -92,16 +92,16 @@ def _laurel(k: int, materials: Materials) -> list[tuple[Mesh, int]]:
     pot = profiles.chain(
         (0.19, 0.0),
         (0.20, 0.03),
-        profiles.cyma(0.20, 0.29, 0.03, 0.36, 6),
-        profiles.torus(0.285, 0.40, 0.08, 5),
+        profiles.cyma(0.20, 0.29, 0.03, 0.36, 4),
+        profiles.torus(0.285, 0.40, 0.08, 3),
         (0.27, 0.48),
         (0.24, 0.46),
         (0.23, 0.38),
     )
     crown = card_ball(Seed(1).child(f"laurel-{k}").numpy(), 70, (0, 1.38, 0), (0.36, 0.40, 0.36), 0.36)
     return [
-        (lathe(pot, 20), materials.terracotta),
-        (disc(0.235, 0.42, 20), materials.soil),
+        (lathe(pot, 16), materials.terracotta),
+        (disc(0.235, 0.42, 16), materials.soil),
         (cylinder(0.028, 0.85, 8, capped=False).moved(y=0.40), materials.bark),
         (crown, materials.leaves),
     ]

@@ -22,7 +22,7 @@ PAVING_M = 2.9
 def add_galleries(scene: SceneBuilder, materials: Materials) -> None:
     """Court, arcade and gallery floors, the step between, balustrades, ceiling."""
     _add_floors(scene, materials)
-    rail = scene.mesh("balustrade", (balustrade(plan.UPPER_BAY - 0.22, 4), materials.limestone))
+    rail = scene.mesh("balustrade", (balustrade(plan.UPPER_BAY - 0.40, 4), materials.limestone))
     for k, (x, z, yaw) in enumerate(plan.arcade_spots(plan.UPPER_BAY)):
         scene.node(f"balustrade {k}", mesh=rail, translation=(x, plan.GALLERY_Y, z), yaw_deg=yaw)
     scene.object("ceiling boards", (_ceiling_boards(), materials.wood))
@@ -62,7 +62,7 @@ def _add_floors(scene: SceneBuilder, materials: Materials) -> None:
     scene.object("gallery floor", (gallery, materials.tile))
 
 
-def baluster(height: float, n_sides: int = 8) -> Mesh:
+def baluster(height: float, n_sides: int = 7) -> Mesh:
     """A turned vase baluster between two square blocks."""
     block = 0.075
     low, high = block, height - block
@@ -71,13 +71,11 @@ def baluster(height: float, n_sides: int = 8) -> Mesh:
         (0.030, low),
         (0.043, low + 0.03 * h),
         (0.030, low + 0.09 * h),
-        (0.052, low + 0.22 * h),
-        (0.060, low + 0.34 * h),
-        (0.048, low + 0.50 * h),
+        (0.056, low + 0.24 * h),
+        (0.058, low + 0.36 * h),
         (0.030, low + 0.70 * h),
-        (0.026, low + 0.84 * h),
-        (0.042, low + 0.90 * h),
-        (0.030, low + 0.95 * h),
+        (0.026, low + 0.85 * h),
+        (0.042, low + 0.91 * h),
         (0.034, high),
     )
     foot = box((-0.055, 0, -0.055), (0.055, low, 0.055))
@@ -98,7 +96,7 @@ def handrail_profile(height: float) -> Array:
 
 
 def balustrade(length: float, n_balusters: int) -> Mesh:
-    """A straight run along x, centred: plinth, turned balusters, moulded rail. Ends are open."""
+    """A straight run along x, centred: plinth, turned balusters, moulded rail, a die at either end."""
     half = length / 2
     plinth, rail_low = 0.14, RAIL_M - 0.13
     post = baluster(rail_low - plinth).moved(y=plinth)
@@ -115,7 +113,9 @@ def balustrade(length: float, n_balusters: int) -> Mesh:
     profile = handrail_profile(RAIL_M)
     rail = [*profile, *(profile[::-1] * [-1, 1])]
     rail = [(-0.075, rail_low), *rail]
-    return join(*posts, _prismatic(foot, half), _prismatic(rail, half))
+    die = bevelled_box((-0.06, 0.0, -0.155), (0.06, RAIL_M + 0.015, 0.155), 0.01)
+    dies = [die.moved(x=side * (half + 0.05)) for side in (-1, 1)]
+    return join(*posts, _prismatic(foot, half), _prismatic(rail, half), *dies)
 
 
 def _prismatic(outline: list, half: float) -> Mesh:
@@ -147,13 +147,13 @@ def _beams() -> Mesh:
     for k in range(28):
         x = -plan.HALF_X + 0.4 + 0.8 * k
         for low, high in ((-plan.INNER_Z, -near_z), (near_z, plan.INNER_Z)):
-            beams.append(bevelled_box((x - half, y0, low), (x + half, y1, high), 0.015))
+            beams.append(box((x - half, y0, low), (x + half, y1, high)))
     for k in range(12):
         z = -plan.HALF_Z + 0.4 + 0.8 * k
-        beams.append(bevelled_box((-plan.INNER_X, y0, z - half), (-near_x, y1, z + half), 0.015))
+        beams.append(box((-plan.INNER_X, y0, z - half), (-near_x, y1, z + half)))
     for k in range(21):
         z = -8.0 + 0.8 * k
-        beams.append(bevelled_box((plan.HALF_X + 0.35, y0, z - half), (plan.INNER_X, y1, z + half), 0.015))
+        beams.append(box((plan.HALF_X + 0.35, y0, z - half), (plan.INNER_X, y1, z + half)))
     return join(*beams)
 
 

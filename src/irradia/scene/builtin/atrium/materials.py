@@ -17,13 +17,20 @@ CLOTH_COLOURS: dict[str, Rgb] = {
     "violet": (0.34, 0.05, 0.42),
 }
 
+FRESCO_COLOURS: dict[str, Rgb] = {
+    "red": (0.62, 0.15, 0.10),
+    "green": (0.24, 0.40, 0.30),
+    "ochre": (0.95, 0.66, 0.32),
+}
+"""Factors on the plaster's texture."""
+
 LANTERN_RADIANCE: Rgb = (60000.0, 34000.0, 12000.0)
 """Candle glass in cd/m²: bright enough to show beside the sun's 90 klx."""
 
 
 @dataclass(frozen=True)
 class Materials:
-    """Material indices of the document; ``cloth`` by colour name."""
+    """Material indices of the document; ``cloth`` and ``fresco`` by colour name."""
 
     plaster: int
     limestone: int
@@ -44,6 +51,7 @@ class Materials:
     soil: int
     lantern: int
     cloth: dict[str, int]
+    fresco: dict[str, int]
 
 
 def add_materials(scene: SceneBuilder) -> Materials:
@@ -58,8 +66,9 @@ def add_materials(scene: SceneBuilder) -> Materials:
         return scene.material(Material(name, base_color=(*rgb, 1.0), metallic=metallic, roughness=roughness))
 
     weave = scene.texture("cloth", textures.cloth())
+    lime = scene.texture("plaster", textures.plaster())
     return Materials(
-        plaster=stone("plaster", scene.texture("plaster", textures.plaster()), 3.2, 0.95),
+        plaster=stone("plaster", lime, 3.2, 0.95),
         limestone=stone("limestone", scene.texture("limestone", textures.limestone()), 1.8, 0.85),
         ashlar=stone("ashlar", scene.texture("ashlar", textures.ashlar()), 1.6, 0.85),
         brick=stone("brick", scene.texture("brick", textures.brick()), 1.2, 0.9),
@@ -86,6 +95,7 @@ def add_materials(scene: SceneBuilder) -> Materials:
             )
         ),
         cloth={name: _cloth(scene, name, rgb, weave) for name, rgb in CLOTH_COLOURS.items()},
+        fresco={name: _fresco(scene, name, rgb, lime) for name, rgb in FRESCO_COLOURS.items()},
     )
 
 
@@ -99,6 +109,17 @@ def _cloth(scene: SceneBuilder, name: str, rgb: Rgb, weave: TextureRef) -> int:
         specular=0.3,
     )
     return scene.material(material, tile_m=0.9)
+
+
+def _fresco(scene: SceneBuilder, name: str, rgb: Rgb, plaster: TextureRef) -> int:
+    material = Material(
+        f"{name} fresco",
+        base_color=(*rgb, 1.0),
+        base_color_texture=plaster,
+        metallic=0.0,
+        roughness=0.9,
+    )
+    return scene.material(material, tile_m=3.2)
 
 
 def _glass(scene: SceneBuilder) -> int:

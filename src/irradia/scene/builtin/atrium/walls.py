@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import itertools
-
 from irradia.scene.builtin import profiles
 from irradia.scene.builtin.arch import arch_panel, arched_pane, jambs, soffit
 from irradia.scene.builtin.atrium import plan
 from irradia.scene.builtin.atrium.materials import Materials
+from irradia.scene.builtin.atrium.ornament import upright_band
 from irradia.scene.builtin.builder import SceneBuilder
 from irradia.scene.builtin.mesh import Mesh, join
 from irradia.scene.builtin.shapes import bevelled_box, floor, frame, quad
@@ -23,7 +22,7 @@ _EAST, _EAST_PLACES = (0.75, 4.55, 6.95), (-2.6, 0.0, 2.6)
 
 
 def add_walls(scene: SceneBuilder, materials: Materials) -> None:
-    """Inner faces, windows with stained glass, dado, shell and roof."""
+    """Inner faces, windows with stained glass, skirting, shell and roof."""
     low = plan.ARCADE_Y
     for z, yaw in ((-plan.INNER_Z, 0.0), (plan.INNER_Z, 180.0)):
         name = "north" if z < 0 else "south"
@@ -37,7 +36,7 @@ def add_walls(scene: SceneBuilder, materials: Materials) -> None:
     scene.object("west wall", (west.turned(90), materials.plaster))
     _add_south_windows(scene, materials)
     _add_east_windows(scene, materials)
-    _add_dado(scene, materials)
+    _add_skirting(scene, materials)
     _add_shell(scene, materials)
 
 
@@ -91,34 +90,21 @@ def _window(window: tuple[float, float, float], materials: Materials) -> list[tu
     radius, sill, spring = window
     depth = plan.OUTER_WALL
     band = [(0.0, 0.0), (0.05, 0.0), (0.05, 0.07), (0.03, 0.09), (0.03, 0.14), (0.0, 0.14)]
-    right = _upright_band(band, radius, sill, spring)
-    left = right.transformed([[-1, 0, 0], [0, 1, 0], [0, 0, 1]])
     ledge = bevelled_box((-radius - 0.2, sill - 0.13, -0.01), (radius + 0.2, sill + 0.004, 0.10), 0.015)
     stone = join(
         soffit(radius, spring, depth, 16),
         jambs(radius, sill, spring, depth),
         quad((-radius, sill, 0), (2 * radius, 0, 0), (0, 0, -depth)),
         sweep_arc(band, radius, 16).moved(y=spring),
-        left,
-        right,
+        upright_band(band, radius, sill, spring),
         ledge,
     )
     pane = arched_pane(radius, sill, spring, 16).moved(z=-depth / 2)
     return [(stone, materials.limestone), (pane, materials.glass)]
 
 
-def _upright_band(band: list[tuple[float, float]], radius: float, low_y: float, high_y: float) -> Mesh:
-    """The band of an arch carried straight down its right jamb."""
-    outline = [(proud, radius + away) for proud, away in band]
-    faces = [
-        quad((x0, low_y, z0), (x1 - x0, 0, z1 - z0), (0, high_y - low_y, 0))
-        for (z0, x0), (z1, x1) in itertools.pairwise(outline)
-    ]
-    return join(*faces)
-
-
-def _add_dado(scene: SceneBuilder, materials: Materials) -> None:
-    """A red marble skirting along the arcades' outer walls, and a stone band at the vaults' spring."""
+def _add_skirting(scene: SceneBuilder, materials: Materials) -> None:
+    """A red marble skirting along the outer walls of both storeys."""
     skirting = profiles.chain(
         (0.03, 0.0), (0.03, 0.34), profiles.cyma(0.03, 0.004, 0.34, 0.06, 4), (0.0, 0.40)
     )
