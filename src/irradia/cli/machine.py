@@ -133,7 +133,7 @@ def check_node() -> Check:
     program = shutil.which("node")
     done = _run([program, "--version"]) if program else None
     version = done.stdout.strip() if done and done.returncode == 0 else ""
-    fix = f"Install Node.js {OLDEST_NODE} or newer (Debian, Ubuntu: see your distribution's nodejs)."
+    fix = f"Install Node.js {OLDEST_NODE} or newer; Debian 12, Ubuntu 24.04: sudo apt-get install nodejs npm"
     if not version:
         return Check("Node.js", "optional", "absent; only the web packages need it", fix)
     if int(version.lstrip("v").split(".")[0]) < OLDEST_NODE:
