@@ -14,6 +14,7 @@ from irradia.scene.builtin.relief import sheet
 from irradia.scene.builtin.shapes import cylinder
 
 THICKNESS_M = 0.012
+_N_FOLDS = 6
 
 # Colour, half-bay along x (0 is the court's middle) of each throw, north and south.
 _NORTH_THROWS = (
@@ -93,17 +94,20 @@ def _curtain(side: int) -> Mesh:
     below = np.clip((tie - heights) / (tie - hem), 0, 1)
     edge = plan.ARCH_RADIUS - 0.06
     outer = edge - 0.10 * np.sin(np.pi * reach) - 0.05 * (below + (reach <= 0))
-    width = 0.20 + (2 * edge - 0.35) * reach**1.7 + 0.34 * np.sqrt(below)
+    width = 0.34 + (2 * edge - 0.49) * reach**1.7 + 0.26 * np.sqrt(below)
     across = np.linspace(0, 1, 49)
     x = side * (outer[None] - width[None] * across[:, None])
-    depth = 0.030 + 0.055 * (1 - reach) ** 0.7
-    fold = np.sin(2 * np.pi * 8 * across)[:, None] + 0.35 * np.sin(2 * np.pi * 3 * across + 1.0)[:, None]
+    # Folds as deep as they are wide apart, or the offset faces of the shell would cross.
+    depth = 0.25 * width / _N_FOLDS
+    fold = (
+        np.sin(2 * np.pi * _N_FOLDS * across)[:, None] + 0.35 * np.sin(2 * np.pi * 2 * across + 1.0)[:, None]
+    )
     sag = -0.35 * reach[None] * (1 - reach[None]) * across[:, None]
     points = np.stack([x, heights[None] + sag, depth[None] * fold], axis=-1)
     uv = np.stack(np.broadcast_arrays(2.2 * across[:, None], -heights[None]), axis=-1)
     if side > 0:
         points, uv = points[::-1], uv[::-1]
-    return sheet(points, THICKNESS_M, uv)
+    return sheet(points, THICKNESS_M / 2, uv)
 
 
 def _sail(width: float) -> Mesh:
