@@ -78,3 +78,12 @@ def test_a_chart_without_valid_texels_becomes_black(squares):
     filled = fill_invalid(np.ones((len(squares.pixel), 3), np.float32), squares.chart == 1, squares)
     assert not filled[squares.chart == 0].any()
     assert (filled[squares.chart == 1] == 1).all()
+
+
+def test_light_does_not_pass_between_charts_that_abut(page_mesh):
+    corners = two_squares()
+    corners[2:, :, 0] -= 2
+    texels = rasterise(*page_mesh(corners, SIZE, chart=np.array([0, 0, 1, 1])))
+    valid = texels.pixel % SIZE != 19
+    filled = fill_invalid(colours(texels), valid, texels)
+    assert np.array_equal(filled, colours(texels))

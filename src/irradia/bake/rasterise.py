@@ -41,12 +41,14 @@ def rasterise(mesh: MergedMesh, layout: LightmapLayout) -> TexelSet:
     triangle, barycentric, coverage, chart = kernels.resolve(
         fixed, swapped, mesh.chart[drawn], covered, starts, fragments, width, height
     )
+    # In place: at 4096 × 4096 texels this array alone takes half a gigabyte.
+    np.take(drawn.astype(np.uint32), triangle, out=triangle, mode="clip")
     return TexelSet(
         n_pages=layout.n_pages,
         height_px=height,
         width_px=width,
         pixel=covered,
-        triangle=drawn.astype(np.uint32)[triangle],
+        triangle=triangle,
         barycentric=barycentric,
         coverage=coverage,
         chart=chart,
