@@ -29,8 +29,8 @@ def _patchy_sky() -> Environment:
 
 
 def test_alias_table_picks_in_proportion():
+    from irradia.transport.alias import AliasTable
     from irradia.transport.backend import mi
-    from irradia.transport.lights import AliasTable
 
     weights = np.array([0.0, 1.0, 5.0, 0.5, 0.0, 20.0, 3.0])
     index, rest = AliasTable(weights).sample(_random().x, mi.Bool(True))
@@ -45,7 +45,7 @@ def test_alias_table_picks_in_proportion():
 
 def test_environment_density_integrates_to_one():
     from irradia.transport.backend import mi
-    from irradia.transport.lights import EnvironmentLight
+    from irradia.transport.environment_light import EnvironmentLight
 
     light = EnvironmentLight(_patchy_sky())
     u = np.array(_random())
@@ -58,7 +58,7 @@ def test_environment_density_integrates_to_one():
 
 def test_environment_samples_agree_with_lookups_and_estimate_the_power():
     from irradia.transport.backend import mi
-    from irradia.transport.lights import EnvironmentLight
+    from irradia.transport.environment_light import EnvironmentLight
 
     sky = _patchy_sky()
     light = EnvironmentLight(sky)
@@ -85,7 +85,7 @@ def test_environment_samples_agree_with_lookups_and_estimate_the_power():
 )
 def test_environment_is_centred_on_minus_z_and_grows_towards_plus_x(direction, pixel):
     from irradia.transport.backend import mi
-    from irradia.transport.lights import EnvironmentLight
+    from irradia.transport.environment_light import EnvironmentLight
 
     radiance = np.zeros((8, 16, 3), np.float32)
     radiance[pixel] = 1.0
@@ -95,7 +95,7 @@ def test_environment_is_centred_on_minus_z_and_grows_towards_plus_x(direction, p
 
 
 def test_even_sky_is_left_to_rays_and_a_peaked_one_is_sampled():
-    from irradia.transport.lights import EnvironmentLight
+    from irradia.transport.environment_light import EnvironmentLight
 
     assert not EnvironmentLight(Environment(np.ones((8, 16, 3), np.float32))).sampled
     assert EnvironmentLight(_patchy_sky()).sampled

@@ -67,43 +67,51 @@ def run_epochs(
     Returns:
         E/π (N, 3), the epochs, and kernel launches per pass.
     """
-    from irradia.transport.texel_light import count_launches
-
-    reflectance = light.reflectance() if plan.cached else None
-    with progress.stage("direct light", light.n_texels * n_direct, "samples") as stage:
-        direct = light.empty_sums()
-        while direct.count < n_direct:
-            n = min(_rays_per_pass(light.n_texels), n_direct - direct.count)
-            direct = light.direct(direct, n, seed.child("direct").uint32())
-            light.wait()
-            stage.advance(n * light.n_texels)
-
+    direct = _direct_light(light, n_direct, seed.child("direct"), progress)
+    reflectance = light.reflectance()
     epochs: list[Epoch] = []
     cache: LightCache | None = None
     if plan.cached:
         with progress.stage("light bounces") as stage:
             rays = min(max(_RAYS_TO_SETTLE // light.n_texels, 1), max(plan.sizes[-1] // 8, 1))
-            cache = _settle(light, direct.mean, reflectance, rays, seed.child("settle"), epochs, stage)
+            cache = _settle(light, direct, reflectance, rays, seed.child("settle"), epochs, stage)
 
-    launches = 0
-    rays_per_pass = _rays_per_pass(light.n_texels)
-    sums = light.empty_sums()
+    estimate, launches = direct, 0
     total = light.n_texels * sum(plan.sizes)
     with progress.stage("gather", total, "samples") as stage:
         for number, size in enumerate(plan.sizes):
-            gather = partial(
-                light.gather, seed=seed.child(f"epoch-{number}").uint32(), cache=cache, first_subsample=number
-            )
-            sums = light.empty_sums()
-            while sums.count < size:
-                n = min(rays_per_pass, size - sums.count)
-                sums, launches = count_launches(partial(gather, sums, n))
-                stage.advance(n * light.n_texels)
-            estimate = sums.mean + direct.mean
+            stream = seed.child(f"epoch-{number}")
+            gathered, launches = _gather(light, size, cache, number, stream, stage)
+            estimate = gathered + direct
             epochs.append(Epoch(size, light.mean(estimate)))
             if plan.cached and number + 1 < len(plan.sizes):
                 cache = light.cache(estimate, reflectance)
-    return light.to_host(sums.mean + direct.mean), epochs, launches
+    return light.to_host(estimate), epochs, launches
+
+
+def _direct_light(light: TexelLight, n_direct: int, seed: Seed, progress: Progress) -> TexelColour:
+    """Light straight from sources: it depends on no cache, so once is enough for all epochs."""
+    sums = light.empty_sums()
+    with progress.stage("direct light", light.n_texels * n_direct, "samples") as stage:
+        while sums.count < n_direct:
+            n = min(_rays_per_pass(light.n_texels), n_direct - sums.count)
+            sums = light.direct(sums, n, seed.uint32())
+            light.wait()
+            stage.advance(n * light.n_texels)
+    return sums.mean
+
+
+def _gather(
+    light: TexelLight, size: int, cache: LightCache | None, number: int, seed: Seed, stage: Stage
+) -> tuple[TexelColour, int]:
+    """One epoch from nothing: the mean of ``size`` rays a texel, and kernel launches per pass."""
+    gather = partial(light.gather, seed=seed.uint32(), cache=cache, first_subsample=number)
+    sums, launches = light.empty_sums(), 0
+    while sums.count < size:
+        n = min(_rays_per_pass(light.n_texels), size - sums.count)
+        sums, launches = light.count_launches(partial(gather, sums, n))
+        stage.advance(n * light.n_texels)
+    return sums.mean, launches
 
 
 def _rays_per_pass(n_texels: int) -> int:

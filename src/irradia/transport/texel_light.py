@@ -204,11 +204,10 @@ class TexelLight:
         """(N, 3) array."""
         return np.ascontiguousarray(np.array(value).T)
 
-
-def count_launches(run: Callable[[], T]) -> tuple[T, int]:
-    """Runs a piece of work to its end and counts the kernels that it launched."""
-    with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
-        dr.kernel_history_clear()
-        result = run()
-        dr.sync_thread()
-        return result, sum(entry["type"] == dr.KernelType.JIT for entry in dr.kernel_history())
+    def count_launches(self, run: Callable[[], T]) -> tuple[T, int]:
+        """Runs a piece of work to its end and counts the kernels that it launched."""
+        with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
+            dr.kernel_history_clear()
+            result = run()
+            dr.sync_thread()
+            return result, sum(entry["type"] == dr.KernelType.JIT for entry in dr.kernel_history())

@@ -11,8 +11,10 @@ from irradia.core import InputError
 from irradia.scene.merge import MergedMesh
 from irradia.scene.types import Scene
 from irradia.transport.backend import dr, mi
+from irradia.transport.emissive import EmissiveTriangles
+from irradia.transport.environment_light import EnvironmentLight
 from irradia.transport.geometry import Geometry, SurfacePoint
-from irradia.transport.lights import EmissiveTriangles, EnvironmentLight, Lights, PunctualLights
+from irradia.transport.lights import Lights
 from irradia.transport.materials import (
     DOUBLE_SIDED,
     EMISSIVE,
@@ -21,6 +23,7 @@ from irradia.transport.materials import (
     Appearance,
     MaterialTable,
 )
+from irradia.transport.punctual import PunctualLights
 from irradia.transport.textures import TextureTable, mean_colour
 
 HAS_TEXEL = 16  # beside the material flags: the triangle lies in the lightmap
