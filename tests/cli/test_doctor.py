@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+import tomllib
 
 import pytest
 
@@ -51,6 +53,13 @@ def test_an_absent_package_is_named(monkeypatch):
     check = machine.check_packages()
     assert check.state == "missing"
     assert check.found == "absent: no_such_package"
+
+
+def test_every_dependency_of_the_core_install_is_looked_for(repo_root):
+    project = tomllib.loads((repo_root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    names = {re.split(r"[<>=]", entry)[0] for entry in project["dependencies"]}
+    imported = {"pillow": "PIL", "flip-evaluator": "flip_evaluator"}
+    assert {imported.get(name, name) for name in names} == set(machine.PACKAGES)
 
 
 def test_an_old_python_is_refused(monkeypatch):

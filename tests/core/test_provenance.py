@@ -34,6 +34,22 @@ def test_a_record_is_plain_json():
     }
 
 
+def test_equal_runs_on_other_threads_have_equal_reproducible_records():
+    records = []
+    for threads in (1, 2):
+        made = provenance.record(
+            "bake",
+            {"samples": 64, "threads": threads},
+            seed=7,
+            inputs={},
+            device=Device("cpu", "Some CPU", threads),
+            wall_s=float(threads),
+        )
+        records.append(made.reproducible())
+    assert records[0] == records[1]
+    assert records[0]["config"] == {"samples": 64}
+
+
 def test_the_commit_is_the_checkouts(repo_root):
     head = subprocess.run(
         ["git", "-C", str(repo_root), "rev-parse", "HEAD"], capture_output=True, text=True, check=True

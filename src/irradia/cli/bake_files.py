@@ -35,7 +35,7 @@ def write_products(
     from irradia.export import write_baked_glb
 
     origin = _provenance(job, baked.scene, time.perf_counter() - start)
-    lightmap = make_lightmap(baked.result.pages, baked.result.coverage, origin)
+    lightmap = make_lightmap(baked.result.pages, baked.result.coverage, origin.reproducible())
     with progress.stage("files"):
         write_lightmap(folder / "lightmap.exr", lightmap)
         _write_previews(folder / "preview.png", lightmap)
@@ -46,7 +46,7 @@ def write_products(
             baked.result.pages,
             compatible=job.compatible,
         )
-    record = bake_record(baked, lightmap, progress, origin)
+    record = bake_record(baked, lightmap, progress, origin.to_dict())
     if baked.view is not None:
         _write_picture(folder / "view.png", baked.view.baked)
         from irradia.cli.bake_report import report_data
@@ -108,16 +108,15 @@ def scene_hash(scene: Scene) -> str:
     return provenance.sha256_bytes(text, *document.buffers, *document.images)
 
 
-def _provenance(job: BakeJob, scene: Scene, wall_s: float) -> dict[str, Any]:
+def _provenance(job: BakeJob, scene: Scene, wall_s: float) -> provenance.Provenance:
     from irradia.transport.backend import device
 
     inputs = {Path(job.scene).name: scene_hash(scene)}
     if job.light.env is not None:
         inputs[job.light.env.name] = provenance.sha256_file(job.light.env)
-    made = provenance.record(
+    return provenance.record(
         "bake", job.config(), seed=job.bake.seed, inputs=inputs, device=device, wall_s=wall_s
     )
-    return made.to_dict()
 
 
 def _write_picture(path: Path, radiance: NDArray[np.float32]) -> None:

@@ -54,6 +54,17 @@ class Provenance:
         """Plain values, ready for JSON."""
         return asdict(self)
 
+    def reproducible(self) -> dict[str, Any]:
+        """As :meth:`to_dict`, without what differs between runs that give the same result: the time
+        it took, when, and on how many threads. Files whose bytes must agree carry this.
+        """
+        plain = asdict(self)
+        for key in ("created", "wall_s"):
+            del plain[key]
+        for holder in (plain["config"], plain["device"] or {}):
+            holder.pop("threads", None)
+        return plain
+
 
 def record(
     command: str,
