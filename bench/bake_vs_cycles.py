@@ -127,6 +127,8 @@ def prepare(arguments: argparse.Namespace, folder: Path) -> tuple[Setting, Refer
     write_task(task, scene, layout)
     mesh, texels = cover(scene, layout)
     candidates = np.flatnonzero(inner_texels(scene.materials, mesh, texels))
+    if len(candidates) == 0:
+        raise SystemExit(f"{arguments.scene} has no texel that can be compared at this resolution")
     size = min(arguments.texels, len(candidates))
     chosen = np.sort(np.random.default_rng(0).choice(candidates, size, replace=False))
     halves = [_reference_half(arguments, kept, task, chosen, seed) for seed in REFERENCE_SEEDS]

@@ -22,6 +22,7 @@ _START = time.perf_counter()
 
 import bpy  # noqa: E402
 import numpy as np  # noqa: E402
+from cycles_materials import material, new_image  # noqa: E402
 
 # Far above what reaches the eye: Russian roulette ends paths, not a bounce limit.
 MAX_BOUNCES = 256
@@ -114,8 +115,8 @@ def _add_mesh(task: dict, pages: list[bpy.types.Image]) -> None:
 
     keys = np.stack([task["material"], task["page"]], axis=1)
     slots, slot_of_triangle = np.unique(keys, axis=0, return_inverse=True)
-    for material, page in slots:
-        mesh.materials.append(_material(task, int(material), pages[page] if page >= 0 else None))
+    for index, page in slots:
+        mesh.materials.append(material(task, int(index), pages[page] if page >= 0 else None))
     mesh.polygons.foreach_set("material_index", slot_of_triangle.ravel().astype(np.int32))
     mesh.polygons.foreach_set("use_smooth", np.ones(n_corners // 3, bool))
     mesh.update()
@@ -125,116 +126,6 @@ def _add_mesh(task: dict, pages: list[bpy.types.Image]) -> None:
     bpy.context.collection.objects.link(scene_object)
     bpy.context.view_layer.objects.active = scene_object
     scene_object.select_set(True)
-
-
-def _material(task: dict, index: int, page: bpy.types.Image | None) -> bpy.types.Material:
-    """Diffuse reflection of the front, light let through unbent, and emission of the front.
-
-    As in Irradia the back of a single-sided surface blocks light and reflects none.
-    """
-    material = bpy.data.materials.new(f"material {index}")
-    material.use_nodes = True
-    tree = material.node_tree
-    tree.nodes.clear()
-    link = tree.links.new
-    single_sided = not bool(task["double_sided"][index])
-    front = tree.nodes.new("ShaderNodeNewGeometry").outputs["Backfacing"] if single_sided else None
-
-    closures = []
-    reflectance = task["reflectance"][index]
-    if reflectance.any():
-        diffuse = tree.nodes.new("ShaderNodeBsdfDiffuse")
-        link(_diffuse_colour(tree, task, index, front), diffuse.inputs["Color"])
-        closures.append(diffuse.outputs[0])
-    if task["through"][index].any():
-        transparent = tree.nodes.new("ShaderNodeBsdfTransparent")
-        transparent.inputs["Color"].default_value = (*map(float, task["through"][index]), 1.0)
-        closures.append(transparent.outputs[0])
-    emission = task["emission"][index]
-    if emission.any():
-        emitter = tree.nodes.new("ShaderNodeEmission")
-        strength = float(emission.max())
-        emitter.inputs["Color"].default_value = (*map(float, emission / strength), 1.0)
-        emitter.inputs["Strength"].default_value = strength
-        if front is not None:
-            link(_math(tree, "MULTIPLY", _front(tree, front), strength), emitter.inputs["Strength"])
-        material.cycles.emission_sampling = "FRONT" if single_sided else "FRONT_BACK"
-        closures.append(emitter.outputs[0])
-
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    while len(closures) > 1:
-        add = tree.nodes.new("ShaderNodeAddShader")
-        link(closures.pop(), add.inputs[0])
-        link(closures.pop(), add.inputs[1])
-        closures.append(add.outputs[0])
-    if closures:
-        link(closures[0], output.inputs["Surface"])
-    if page is not None:
-        target = tree.nodes.new("ShaderNodeTexImage")
-        target.image = page
-        tree.nodes.active = target  # where the bake goes
-    return material
-
-
-def _diffuse_colour(
-    tree: bpy.types.NodeTree, task: dict, index: int, backfacing: bpy.types.NodeSocket | None
-) -> bpy.types.NodeSocket:
-    """Factor × texture, black on the back."""
-    factor = tree.nodes.new("ShaderNodeRGB")
-    factor.outputs[0].default_value = (*map(float, task["reflectance"][index]), 1.0)
-    colour = factor.outputs[0]
-    image = int(task["texture"][index])
-    if image >= 0:
-        uv = tree.nodes.new("ShaderNodeUVMap")
-        uv.uv_map = "texture"
-        texture = tree.nodes.new("ShaderNodeTexImage")
-        texture.image = _texture(image, task[f"image_{image}"])
-        texture.interpolation = "Closest" if task["nearest"][index] else "Linear"
-        texture.extension = {"repeat": "REPEAT", "clamp": "EXTEND", "mirror": "MIRROR"}[
-            str(task["wrap"][index])
-        ]
-        tree.links.new(uv.outputs[0], texture.inputs["Vector"])
-        colour = _multiply(tree, colour, texture.outputs["Color"])
-    return colour if backfacing is None else _multiply(tree, colour, _front(tree, backfacing))
-
-
-def _front(tree: bpy.types.NodeTree, backfacing: bpy.types.NodeSocket) -> bpy.types.NodeSocket:
-    """1 on the front, 0 on the back."""
-    node = tree.nodes.new("ShaderNodeMath")
-    node.operation = "SUBTRACT"
-    node.inputs[0].default_value = 1.0
-    tree.links.new(backfacing, node.inputs[1])
-    return node.outputs[0]
-
-
-def _math(
-    tree: bpy.types.NodeTree, operation: str, socket: bpy.types.NodeSocket, value: float
-) -> bpy.types.NodeSocket:
-    node = tree.nodes.new("ShaderNodeMath")
-    node.operation = operation
-    tree.links.new(socket, node.inputs[0])
-    node.inputs[1].default_value = value
-    return node.outputs[0]
-
-
-def _multiply(
-    tree: bpy.types.NodeTree, a: bpy.types.NodeSocket, b: bpy.types.NodeSocket
-) -> bpy.types.NodeSocket:
-    node = tree.nodes.new("ShaderNodeVectorMath")
-    node.operation = "MULTIPLY"
-    tree.links.new(a, node.inputs[0])
-    tree.links.new(b, node.inputs[1])
-    return node.outputs[0]
-
-
-def _texture(index: int, srgb: np.ndarray) -> bpy.types.Image:
-    """A linear float image, so that filtering happens after decoding, as in Irradia."""
-    name = f"image {index}"
-    if name in bpy.data.images:
-        return bpy.data.images[name]
-    coded = srgb[..., :3].astype(np.float32) / 255.0
-    linear = np.where(coded <= 0.04045, coded / 12.92, ((coded + 0.055) / 1.055) ** 2.4)
-    return _new_image(name, linear)
 
 
 def _add_light(task: dict, index: int) -> None:
@@ -290,23 +181,11 @@ def _add_environment(radiance: np.ndarray) -> None:
     if width % 4:
         raise SystemExit(f"an environment map's width must be a multiple of 4, found {width}")
     texture = tree.nodes.new("ShaderNodeTexEnvironment")
-    texture.image = _new_image("environment", np.roll(radiance, -width // 4, axis=1))
+    texture.image = new_image("environment", np.roll(radiance, -width // 4, axis=1))
     texture.interpolation = "Closest"
     tree.links.new(texture.outputs["Color"], background.inputs["Color"])
     world.cycles.sampling_method = "MANUAL"
     world.cycles.sample_map_resolution = max(width, 4)
-
-
-def _new_image(name: str, linear: np.ndarray) -> bpy.types.Image:
-    """A float image from (H, W, 3), row 0 at the top."""
-    height, width, _ = linear.shape
-    rgba = np.ones((height, width, 4), np.float32)
-    rgba[..., :3] = linear[::-1]
-    image = bpy.data.images.new(name, width, height, float_buffer=True, is_data=True)
-    image.pixels.foreach_set(rgba.ravel())
-    image.update()
-    image.pack()
-    return image
 
 
 def _read_image(image: bpy.types.Image) -> np.ndarray:

@@ -42,8 +42,9 @@ def write_task(path: Path, scene: Scene, layout: LightmapLayout) -> None:
     lightmap_uv             (T, 3, 2) page uv, origin top left
     texture_uv              (T, 3, 2) with the material's texture transform applied
     material, page          (T,)
-    reflectance             (M, 3) factor on the texture, of light that neither passes nor is lost
-    through                 (M, 3) share of light that passes unbent
+    base_color              (M, 4) factor on the texture
+    alpha_mode, _cutoff     (M,) 0 opaque, 1 mask, 2 blend
+    transmission            (M,) share of light that passes unbent, tinted by the base colour
     emission                (M, 3) radiance of the front, of both sides where double_sided
     double_sided, nearest   (M,)
     texture, wrap           (M,) index of image_K or −1; repeat, clamp or mirror
@@ -54,7 +55,7 @@ def write_task(path: Path, scene: Scene, layout: LightmapLayout) -> None:
     ======================  =====================================================================
 
     Raises:
-        InputError: The scene has what a task can't say, such as textured alpha or spot lights.
+        InputError: The scene has what a task can't say, such as vertex colours or spot lights.
     """
     mesh = merge(scene, layout)
     _check(scene, mesh)
@@ -90,13 +91,13 @@ def _transform(texture: TextureRef, uv: np.ndarray) -> np.ndarray:
 
 def _material_arrays(scene: Scene) -> dict[str, np.ndarray]:
     materials = scene.materials
-    alpha = np.array([m.base_color[3] if m.alpha_mode == "blend" else 1.0 for m in materials])[:, None]
-    passing = np.array([m.transmission for m in materials])[:, None]
-    base = np.array([m.base_color[:3] for m in materials])
     textures = [m.base_color_texture for m in materials]
     arrays = {
-        "reflectance": base * (1.0 - passing) * alpha * np.array([not m.unlit for m in materials])[:, None],
-        "through": (1.0 - alpha) + base * passing * alpha,
+        # What is unlit reflects nothing.
+        "base_color": np.array([(0, 0, 0, 1) if m.unlit else m.base_color for m in materials], np.float32),
+        "alpha_mode": np.array([("opaque", "mask", "blend").index(m.alpha_mode) for m in materials]),
+        "alpha_cutoff": np.array([m.alpha_cutoff for m in materials]),
+        "transmission": np.array([m.transmission for m in materials]),
         "emission": np.array([m.emission for m in materials]),
         "double_sided": np.array([m.double_sided for m in materials]),
         "texture": np.array([-1 if t is None else t.image for t in textures]),
@@ -123,11 +124,8 @@ def _check(scene: Scene, mesh: MergedMesh) -> None:
     """A peer that is given less than we bake would be given less work, or other results."""
     for index, material in enumerate(scene.materials):
         texture = material.base_color_texture
-        filters = material.transmission > 0.0 or material.alpha_mode != "opaque"
         refused = {
             "specular or metal": material.specular > 0.0 or material.metallic > 0.0,
-            "an alpha mask": material.alpha_mode == "mask",
-            "a texture on what lets light through": filters and texture is not None,
             "a transmission texture": material.transmission_texture is not None,
             "an emission texture": material.emission_texture is not None,
             "two wrap modes": texture is not None and texture.wrap_s != texture.wrap_t,

@@ -14,6 +14,7 @@ from irradia.bake.texels import TexelSet
 from irradia.core.progress import silent_progress
 from irradia.scene.lightmap_uv import LayoutOptions, layout_lightmap
 from irradia.scene.merge import MergedMesh
+from irradia.scene.types import Material
 from support.bake_task import write_task
 from support.cycles import bake_with_cycles
 from support.known_answers import KnownAnswer, known_answers
@@ -60,16 +61,19 @@ def _check(known: KnownAnswer, threads: int) -> Verdict:
     return Verdict(known.name, mean_error, worst_error, passed)
 
 
-def inner_texels(materials: tuple, mesh: MergedMesh, texels: TexelSet) -> np.ndarray:
+def inner_texels(materials: tuple[Material, ...], mesh: MergedMesh, texels: TexelSet) -> np.ndarray:
     """(N,) texels that lie wholly in a chart, on opaque surfaces that reflect.
 
     At a chart's border bakers differ in where they sample; where nothing is reflected, the peer's
     division by the albedo has no answer.
     """
-    compared = np.array(
-        [min(m.base_color[:3]) > 0.0 and m.transmission == 0.0 and not m.unlit for m in materials]
-    )
+    compared = np.array([_is_opaque_and_lit(material) for material in materials])
     return (texels.coverage >= 1.0) & compared[mesh.material[texels.triangle[:, 0]]]
+
+
+def _is_opaque_and_lit(material: Material) -> bool:
+    opaque = material.alpha_mode == "opaque" and material.transmission == 0.0
+    return opaque and min(material.base_color[:3]) > 0.0 and not material.unlit
 
 
 def texel_positions(mesh: MergedMesh, texels: TexelSet) -> np.ndarray:

@@ -17,9 +17,10 @@ def plot_curves(
     import matplotlib as mpl
 
     mpl.use("svg")
-    mpl.rcParams["svg.hashsalt"] = "irradia"  # the same curves give the same file
+    # Text stays text, and the same curves give the same file.
+    mpl.rcParams.update({"svg.hashsalt": "irradia", "svg.fonttype": "none"})
     from matplotlib import pyplot as plt
-    from matplotlib.ticker import FormatStrFormatter
+    from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
 
     figure, axes = plt.subplots(figsize=(6.4, 4.0))
     for (name, curve), colour in zip(curves.items(), COLOURS, strict=False):
@@ -34,7 +35,9 @@ def plot_curves(
         axes.axhline(100.0 * target, color="#bbbbbb", linewidth=0.8, zorder=0)
     axes.set(xscale="log", yscale="log", xlabel="seconds, warm-up included", ylabel="relative RMSE in %")
     axes.set_title(title, fontsize=10)
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.yaxis.set_major_formatter(FormatStrFormatter("%g"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
     axes.xaxis.set_major_formatter(FormatStrFormatter("%g"))
     axes.legend(frameon=False)
     figure.tight_layout()
