@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from irradia.scene.lightmap_uv.atlas import new_atlas
 from irradia.scene.lightmap_uv.unwrap import triangle_areas
 from irradia.scene.types import F32, F64, U32
 
@@ -80,20 +81,20 @@ def pack(groups: Sequence[Islands], padding_px: int) -> tuple[int, int, list[Pla
     options.bilinear = False
     options.rotate_charts = False
     options.rotate_charts_to_axis = False
-    atlas = xatlas.Atlas()
     # xatlas takes a mesh at an address that it knows for a copy of that one: keep all of them alive.
     packed = [_Packable.of(group) for group in groups]
-    for one in packed:
-        atlas.add_uv_mesh(one.uv, one.indices, one.island.reshape(-1, 1))
-    atlas.generate(xatlas.ChartOptions(), options)
-    size = np.array([atlas.width, atlas.height], np.float64)
-    placements = []
-    for number, one in enumerate(packed):
-        _, indices, uv = atlas.get_mesh(number)
-        _, chart = atlas.get_mesh_vertex_assignment(number)
-        kept = (chart[indices] != _UNASSIGNED).all(axis=1)
-        placements.append(one.placement(uv[indices] * size, kept))
-    return int(atlas.width), int(atlas.height), placements
+    with new_atlas() as atlas:
+        for one in packed:
+            atlas.add_uv_mesh(one.uv, one.indices, one.island.reshape(-1, 1))
+        atlas.generate(xatlas.ChartOptions(), options)
+        size = np.array([atlas.width, atlas.height], np.float64)
+        placements = []
+        for number, one in enumerate(packed):
+            _, indices, uv = atlas.get_mesh(number)
+            _, chart = atlas.get_mesh_vertex_assignment(number)
+            kept = (chart[indices] != _UNASSIGNED).all(axis=1)
+            placements.append(one.placement(uv[indices] * size, kept))
+        return int(atlas.width), int(atlas.height), placements
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from irradia.core.cache import cache_dir
 from irradia.core.files import write_atomic
+from irradia.scene.lightmap_uv.atlas import new_atlas
 from irradia.scene.types import F32, F64, U32, Primitive
 
 # xatlas packs what it cut on a page of about this edge. It rounds a chart's extent to whole texels of
@@ -99,17 +100,16 @@ def _cut(positions: F64, normals: F32, indices: U32) -> Charts:
     packing = xatlas.PackOptions()
     packing.texels_per_unit = _PAGE_PX / np.sqrt(1.4 * len(indices))
     packing.rotate_charts = False
-    atlas = xatlas.Atlas()
     points = np.ascontiguousarray(centred * to_unit, np.float32)
     triangles = np.ascontiguousarray(indices, np.uint32)
-    atlas.add_mesh(points, triangles, normals)
-    atlas.generate(options, packing)
-
-    source, new_indices, uv = atlas.get_mesh(0)
-    _, vertex_chart = atlas.get_mesh_vertex_assignment(0)
-    if atlas.chart_count == 0:
-        return _without_area(indices)
-    unit_uv = uv * np.array([atlas.width, atlas.height]) / packing.texels_per_unit
+    with new_atlas() as atlas:
+        atlas.add_mesh(points, triangles, normals)
+        atlas.generate(options, packing)
+        source, new_indices, uv = atlas.get_mesh(0)
+        _, vertex_chart = atlas.get_mesh_vertex_assignment(0)
+        if atlas.chart_count == 0:
+            return _without_area(indices)
+        unit_uv = uv * np.array([atlas.width, atlas.height]) / packing.texels_per_unit
     return _collapse_strays(
         positions, source, new_indices, (unit_uv / to_unit).astype(np.float32), vertex_chart
     )
