@@ -17,10 +17,9 @@ WIDTH_PX, HEIGHT_PX = 192, 144
 
 
 def irradia(*arguments: str | Path) -> None:
-    done = subprocess.run(
-        [sys.executable, "-m", "irradia", *map(str, arguments)], capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr
+    command = [sys.executable, "-m", "irradia", *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
+    assert done.returncode == 0, f"exit code {done.returncode} of {command[3]}:\n{done.stderr}"
 
 
 @pytest.mark.slow
