@@ -7,22 +7,19 @@ import numpy as np
 from irradia.scene.builtin.mesh import Array, Mesh, grid, join
 
 
-def sheet(points: Array, thickness: float | Array, uv: Array, *, with_back: bool = True) -> Mesh:
+def sheet(points: Array, thickness: float | Array, uv: Array) -> Mesh:
     """A closed shell around an (R, C, 3) sheet, smooth on both faces, with an edge all round.
 
     Args:
         points: Front where (along rows) × (along columns) points.
         thickness: Metres, one value or (R, C).
         uv: (R, C, 2) in metres.
-        with_back: False leaves the back open, where it lies against something.
     """
     normals = surface_normals(points)
     half = normals * np.broadcast_to(np.asarray(thickness) / 2, points.shape[:2])[..., None]
     front = grid(points + half, normals, uv)
-    rim = _rim(points + half, points - half, uv)
-    if not with_back:
-        return join(front, rim)
-    return join(front, grid(points - half, normals, uv).inside_out(), rim)
+    back = grid(points - half, normals, uv).inside_out()
+    return join(front, back, _rim(points + half, points - half, uv))
 
 
 def surface_normals(points: Array) -> Array:
@@ -45,7 +42,7 @@ def leaf(spine: Array, width: float, thickness: float) -> Mesh:
     y = np.broadcast_to(spine[None, :, 1], x.shape)
     points = np.stack([x, y, z], axis=-1)
     uv = np.stack([x + width / 2, -np.broadcast_to(along * np.ptp(spine[:, 1]), x.shape)], axis=-1)
-    return sheet(points, thickness, uv, with_back=False)
+    return sheet(points, thickness, uv)
 
 
 def _rim(front: Array, back: Array, uv: Array) -> Mesh:

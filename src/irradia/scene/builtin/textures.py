@@ -1,10 +1,12 @@
 """Procedural textures of the atrium: stone, marble, brick, plaster, tile, wood, cloth, glass.
 
 Each returns (size, size, 3) sRGB and repeats without a seam, save for glass, which is one window.
-Each has at most 256 colours, so that its PNG is small.
+Each has at most 256 colours, so that its PNG is small. The marbles are cached: leave them unchanged.
 """
 
 from __future__ import annotations
+
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,24 +50,28 @@ def brick(size_px: int = 512) -> U8:
     return np.where(mortar[..., None], lime, bricks)
 
 
+@cache
 def white_marble(size_px: int = 512) -> U8:
     """White marble with grey veins."""
     tone = 0.92 - 0.55 * veins(size_px, "white-veins") - 0.22 * cloud(size_px, "white-cloud", slope=1.8)
     return ramp(tone, [(132, 130, 130), (196, 192, 186), (226, 221, 212), (240, 236, 228)])
 
 
+@cache
 def red_marble(size_px: int = 512) -> U8:
     """Deep red marble, clouded, with pale veins."""
     tone = 0.55 * cloud(size_px, "red-cloud", slope=1.4) + 0.75 * veins(size_px, "red-veins", sharpness=26)
     return ramp(tone, [(74, 26, 22), (118, 46, 36), (150, 74, 56), (214, 178, 156)])
 
 
+@cache
 def pink_marble(size_px: int = 512) -> U8:
     """Rose limestone, flecked and clouded."""
     tone = 0.7 * cloud(size_px, "pink-cloud", slope=1.2) + 0.45 * veins(size_px, "pink-veins", sharpness=22)
     return ramp(tone, [(176, 122, 100), (202, 152, 128), (220, 184, 162), (238, 220, 204)])
 
 
+@cache
 def green_marble(size_px: int = 512) -> U8:
     """Dark green marble with light veins."""
     tone = 0.55 * cloud(size_px, "green-cloud", slope=1.4) + 0.7 * veins(size_px, "green-veins", sharpness=24)

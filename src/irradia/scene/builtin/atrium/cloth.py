@@ -52,12 +52,12 @@ def add_cloth(scene: SceneBuilder, materials: Materials) -> None:
 def _throw(name: str) -> Mesh:
     """Cloth laid over the rail at the origin: long toward the court (+Z), short behind."""
     rng = Seed(1).child(name).numpy()
-    half_width, front, behind = 0.62, rng.uniform(1.7, 2.3), 0.55
-    path, drop = _over_rail(front, behind)
+    half_width, front, behind = 0.62, rng.uniform(1.9, 2.5), 0.55
+    path, slack = _over_rail(front, behind)
     across = np.linspace(-1, 1, 19)
     phase = rng.uniform(0, 2 * np.pi)
     folds = 0.035 * np.sin(3.1 * np.pi * across + phase) + 0.018 * np.sin(7.3 * np.pi * across + 2 * phase)
-    loose = np.clip(drop / 1.2, 0, 1) ** 1.3
+    loose = np.clip(slack / 1.1, 0, 1)
     forward = np.where(path[:, 0] > 0, 1.0, -0.6)
     x = half_width * across[:, None] * (1 - 0.05 * loose[None])
     sag = 0.03 * loose[None] * np.cos(2.1 * np.pi * across + phase)[:, None]
@@ -70,20 +70,22 @@ def _throw(name: str) -> Mesh:
 
 
 def _over_rail(front: float, behind: float) -> tuple[Array, Array]:
-    """(N, 2) of (z, y) from the court's hem over the rail and down behind; metres below the rail."""
-    gap, top = 0.165, RAIL_M + 0.012
-    up = np.linspace(top - front, top - 0.10, 12)
+    """(N, 2) of (z, y) from the court's hem over the string course and the rail, and down behind;
+    and (N,) how far each point hangs below what last carries it.
+    """
+    gap, top, lip = 0.165, RAIL_M + 0.012, (0.63, 0.03)
+    hanging = np.linspace([lip[0], top - front], lip, 9)
+    t = np.linspace(0, 1, 8)[:, None]
+    # From the string course's lip up to the rail the cloth sags a little.
+    leaning = np.array(lip) * (1 - t) + np.array([gap, top - 0.10]) * t + [0.05, -0.06] * (t * (1 - t))
     angle = np.linspace(0, np.pi, 7)
     over = np.stack([gap * np.cos(angle), top - 0.10 + 0.10 * np.sin(angle)], axis=1)
-    down = np.linspace(top - 0.10, top - behind, 5)
-    path = np.concatenate(
-        [
-            np.stack([np.full_like(up, gap), up], axis=1)[:-1],
-            over,
-            np.stack([np.full_like(down, -gap), down], axis=1)[1:],
-        ]
+    down = np.linspace([-gap, top - 0.10], [-gap, top - behind], 5)
+    path = np.concatenate([hanging[:-1], leaning[:-1], over, down[1:]])
+    slack = np.concatenate(
+        [lip[1] - hanging[:-1, 1], 0.25 * np.sin(np.pi * t[:-1, 0]), 0 * angle, top - 0.10 - down[1:, 1]]
     )
-    return path, np.clip(top - path[:, 1] - 0.10, 0, None)
+    return path, slack
 
 
 def _curtain(side: int) -> Mesh:

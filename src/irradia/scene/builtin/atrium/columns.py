@@ -20,7 +20,7 @@ def add_columns(scene: SceneBuilder, materials: Materials) -> None:
     lower = scene.mesh(
         "lower column",
         (shaft(0.235, 0.20, 0.36, 2.58, n_sides=20), materials.white_marble),
-        (join(base(0.235, 0.36, 20), capital(0.20, 2.58, lower_height, 0.40, 16)), materials.limestone),
+        (join(base(0.235, 0.36, 20), capital(0.20, 2.58, lower_height, 0.43, 16)), materials.limestone),
     )
     for k, (x, z, yaw) in enumerate(plan.column_spots(plan.BAY)):
         scene.node(f"lower column {k}", mesh=lower, translation=(x, plan.ARCADE_Y, z), yaw_deg=yaw)
@@ -31,7 +31,7 @@ def add_columns(scene: SceneBuilder, materials: Materials) -> None:
         (shaft(0.115, 0.10, 0.24, upper_height - 0.32, n_sides=10), materials.red_marble),
         (
             join(
-                base(0.115, 0.24, 10, n=2), plain_capital(0.10, upper_height - 0.32, upper_height, 0.25, 10)
+                base(0.115, 0.24, 10, n=2), plain_capital(0.10, upper_height - 0.32, upper_height, 0.27, 10)
             ),
             materials.limestone,
         ),
@@ -117,7 +117,8 @@ def corner_pier() -> Mesh:
         profiles.cyma(0.0, 0.07, plan.SPRING_Y - 0.20, 0.12, 5),
         (0.07, plan.SPRING_Y),
         (0.0, plan.SPRING_Y),
-        (0.0, plan.STRING_Y + 0.02),
+        (0.0, plan.GALLERY_Y),
+        (-0.11, plan.GALLERY_Y),
     )
     above = profiles.chain(
         (0.0, plan.GALLERY_Y),

@@ -60,6 +60,10 @@ def _add_floors(scene: SceneBuilder, materials: Materials) -> None:
         _plane(hall_x, plan.INNER_X, FLIGHT_TOP_Z, plan.INNER_Z, y),
     )
     scene.object("gallery floor", (gallery, materials.tile))
+    # The slab's edge beside the stair, between the pier and the flight's end.
+    edge = quad((hall_x, y - 0.7, -plan.HALF_Z), (0, 0, plan.HALF_Z - FLIGHT_TOP_Z), (0, 0.7, 0))
+    mirrored = edge.transformed(np.diag([1.0, 1.0, -1.0]))
+    scene.object("gallery edge", (join(edge, mirrored), materials.limestone))
 
 
 def baluster(height: float, n_sides: int = 7) -> Mesh:
@@ -80,7 +84,7 @@ def baluster(height: float, n_sides: int = 7) -> Mesh:
     )
     foot = box((-0.055, 0, -0.055), (0.055, low, 0.055))
     head = box((-0.055, high, -0.055), (0.055, height, 0.055))
-    return join(_without_ends(foot), lathe(profile, n_sides), _without_ends(head))
+    return join(_without_face(foot, -1), lathe(profile, n_sides), _without_face(head, 1))
 
 
 def handrail_profile(height: float) -> Array:
@@ -123,9 +127,9 @@ def _prismatic(outline: list, half: float) -> Mesh:
     return moulding(outline, [(-half, 0, 0), (half, 0, 0)])
 
 
-def _without_ends(block: Mesh) -> Mesh:
-    """A box less its top and bottom, which lie against other stones."""
-    return block.only(np.abs(block.normals[block.indices[:, 0], 1]) < 0.5)
+def _without_face(block: Mesh, up: int) -> Mesh:
+    """A box less its top (1) or bottom (-1), which lies against another stone."""
+    return block.only(block.normals[block.indices[:, 0], 1] * up < 0.5)
 
 
 def _ceiling_boards() -> Mesh:

@@ -62,12 +62,12 @@ def _side_flight(materials: Materials) -> list[tuple[Mesh, int]]:
     wall = join(cheek, rail).moved(y=plan.LANDING_Y).turned(90)
     end = quad(
         (high_x, plan.ARCADE_Y, -FLIGHT_TOP_Z),
-        (_CHEEK_X - high_x, 0, 0),
-        (0, plan.GALLERY_Y - plan.ARCADE_Y, 0),
+        (low_x - high_x, 0, 0),
+        (0, plan.GALLERY_Y - RISER_M - plan.ARCADE_Y, 0),
     )
     wall = wall.moved(_CHEEK_X + CHEEK_M / 2, 0, -FLIGHT_TOP_Z)
     posts = [
-        _newel(plan.LANDING_Y).moved(_CHEEK_X + CHEEK_M / 2, 0, -_LANDING_HALF_Z + 0.02),
+        _newel(plan.LANDING_Y).moved(_CHEEK_X + 0.21, 0, -_LANDING_HALF_Z + 0.13),
         _newel(plan.GALLERY_Y).moved(_CHEEK_X + CHEEK_M / 2, 0, -FLIGHT_TOP_Z - 0.10),
     ]
     return [
@@ -95,7 +95,8 @@ def _steps(going: float, width: float) -> Mesh:
             (x + going, top),
         ]  # fmt: skip
     # Drawn along +Z a moulding faces −X, so the outline is given as (−x, y).
-    profile = np.array(outline[:-1]) * [-1, 1]
+    outline[-1] = ((N_RISERS - 1) * going, outline[-1][1])  # the last tread is the floor above
+    profile = np.array(outline) * [-1, 1]
     return moulding(profile, [(0, 0, -width / 2), (0, 0, width / 2)])
 
 
@@ -109,8 +110,12 @@ def _cheek(run: float, slope: float, foot_y: float) -> tuple[Mesh, Mesh]:
     low, high = rise - slope * run + margin, rise + margin
     half = CHEEK_M / 2
     outline = [(-run, foot_y), (0.0, foot_y), (0.0, high), (-run, low)]
-    front = face([(x, y, half) for x, y in outline])
-    back = face([(x, y, -half) for x, y in reversed(outline)])
+    sides = [
+        face([(x, y, half) for x, y in outline]),
+        face([(x, y, -half) for x, y in reversed(outline)]),
+        quad((0.0, foot_y, half), (0, 0, -2 * half), (0, high - foot_y, 0)),
+        quad((-run, foot_y, -half), (0, 0, 2 * half), (0, low - foot_y, 0)),
+    ]
     coping = _sloped(
         [(half + 0.03, -0.04), (half + 0.03, 0.04), (half + 0.01, 0.06), (-half - 0.01, 0.06),
          (-half - 0.03, 0.04), (-half - 0.03, -0.04)], run, low, slope,
@@ -119,12 +124,13 @@ def _cheek(run: float, slope: float, foot_y: float) -> tuple[Mesh, Mesh]:
     outline_rail = [(-0.075, profile[0, 1]), *profile, *(profile[::-1] * [-1, 1])]
     rail = _sloped(outline_rail, run, low, slope)
     n_posts = round(run / 0.36)
-    length = RAIL_M - 0.22 - 0.13 - 0.03
+    # Long enough to sink into the slope below and the rail above.
+    length = RAIL_M - 0.22 - 0.13 + 0.04
     posts = []
     for k in range(n_posts):
         x = -run + (k + 0.5) * run / n_posts
-        posts.append(baluster(length).moved(x, low + slope * (x + run) + 0.045, 0))
-    return join(front, back), join(coping, rail, *posts)
+        posts.append(baluster(length).moved(x, low + slope * (x + run) + 0.01, 0))
+    return join(*sides), join(coping, rail, *posts)
 
 
 def _sloped(outline: list | Array, run: float, low: float, slope: float) -> Mesh:

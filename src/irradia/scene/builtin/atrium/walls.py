@@ -13,6 +13,8 @@ from irradia.scene.builtin.shapes import bevelled_box, floor, frame, quad
 from irradia.scene.builtin.sweep import moulding, sweep_arc
 
 _OUTER_X, _OUTER_Z = plan.INNER_X + plan.OUTER_WALL, plan.INNER_Z + plan.OUTER_WALL
+_FOOT_Y = -0.4
+"""How deep the shell goes: its underside lies well below the court's floor."""
 _SHELL_LIGHTMAP_SCALE = 0.2
 """Texel density outside, where nobody looks."""
 
@@ -118,13 +120,13 @@ def _add_skirting(scene: SceneBuilder, materials: Materials) -> None:
 def _add_shell(scene: SceneBuilder, materials: Materials) -> None:
     """Outside faces with the windows' openings, and the roof; sparse in the lightmap."""
     height = plan.ROOF_Y
-    south = _window_row(_SOUTH, _SOUTH_PLACES, plan.BAY / 2, 0.0, height, _OUTER_X).moved(z=_OUTER_Z)
-    east = _window_row(_EAST, _EAST_PLACES, 1.3, 0.0, height, _OUTER_Z).moved(z=_OUTER_X).turned(90)
-    north = quad((-_OUTER_X, 0, _OUTER_Z), (2 * _OUTER_X, 0, 0), (0, height, 0)).turned(180)
-    west = quad((-_OUTER_Z, 0, _OUTER_X), (2 * _OUTER_Z, 0, 0), (0, height, 0)).turned(-90)
+    south = _window_row(_SOUTH, _SOUTH_PLACES, plan.BAY / 2, _FOOT_Y, height, _OUTER_X).moved(z=_OUTER_Z)
+    east = _window_row(_EAST, _EAST_PLACES, 1.3, _FOOT_Y, height, _OUTER_Z).moved(z=_OUTER_X).turned(90)
+    north = quad((-_OUTER_X, _FOOT_Y, _OUTER_Z), (2 * _OUTER_X, 0, 0), (0, height - _FOOT_Y, 0)).turned(180)
+    west = quad((-_OUTER_Z, _FOOT_Y, _OUTER_X), (2 * _OUTER_Z, 0, 0), (0, height - _FOOT_Y, 0)).turned(-90)
     outer = _rectangle(-_OUTER_X, _OUTER_X, _OUTER_Z, height)
     roof = frame(outer, _rectangle(plan.CORNICE_WEST, plan.CORNICE_EAST, plan.CORNICE_Z, height))
-    underside = floor(2 * _OUTER_X, 2 * _OUTER_Z).inside_out()
+    underside = floor(2 * _OUTER_X, 2 * _OUTER_Z, y=_FOOT_Y).inside_out()
     shell = join(south, east, north, west, roof, underside)
     scene.object("shell", (shell, materials.plaster), lightmap_scale=_SHELL_LIGHTMAP_SCALE)
 
