@@ -75,6 +75,16 @@ def test_light_that_does_not_exist_is_an_input_error(gltf):
         document_to_scene(gltf.document())
 
 
+def test_light_that_an_earlier_bake_put_away_shines_again_in_the_next(gltf):
+    gltf.use("KHR_lights_punctual", "IRRADIA_lighting")
+    gltf.triangle()
+    gltf.json["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 9}]}}
+    gltf.node(extensions={"IRRADIA_lighting": {"bakedLight": 0}})
+    scene = document_to_scene(gltf.document())
+    assert [light.intensity for light in scene.lights] == [(9, 9, 9)]
+    assert scene.notes == ()
+
+
 def camera(gltf, json, **node):
     gltf.triangle()
     gltf.add("cameras", json)

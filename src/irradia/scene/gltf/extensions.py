@@ -11,6 +11,7 @@ READ = frozenset(
         "EXT_mesh_gpu_instancing",
         "EXT_meshopt_compression",
         "EXT_texture_webp",
+        "IRRADIA_lighting",
         "KHR_draco_mesh_compression",
         "KHR_lights_punctual",
         "KHR_materials_diffuse_transmission",
@@ -32,7 +33,8 @@ _REMOVED_BY = {
     "EXT_texture_avif": "npx @gltf-transform/cli png in.glb out.glb",
     "KHR_texture_basisu": "npx @gltf-transform/cli ktxdecompress in.glb out.glb",
 }
-_SILENT = frozenset({"KHR_xmp_json_ld"})  # metadata, nothing that light could see
+# Metadata, and the maps of an earlier bake: nothing that light could see.
+_SILENT = frozenset({"KHR_xmp_json_ld", "MOZ_lightmap"})
 
 
 def check_extensions(root: JsonView, notes: ImportNotes) -> None:

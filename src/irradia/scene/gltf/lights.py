@@ -26,16 +26,23 @@ def read_lights(root: JsonView, nodes: list[PlacedNode]) -> tuple[Light, ...]:
     lights = extension.items("lights") if extension else []
     placed = []
     for node in nodes:
-        reference = node.view.extension("KHR_lights_punctual")
+        reference = _reference(node.view)
         if reference is None:
             continue
-        index = reference.integer("light")
+        index, pointer = reference
         if index >= len(lights):
-            raise InputError(
-                f"expected an index below {len(lights)}, found {index}", where=f"{reference.pointer}/light"
-            )
+            raise InputError(f"expected an index below {len(lights)}, found {index}", where=pointer)
         placed.append(_read_light(lights[index], node))
     return tuple(placed)
+
+
+def _reference(node: JsonView) -> tuple[int, str] | None:
+    """The light that a node carries, also where an earlier bake took it out of loaders' sight."""
+    for name, key in (("KHR_lights_punctual", "light"), ("IRRADIA_lighting", "bakedLight")):
+        view = node.extension(name)
+        if view is not None and view.has(key):
+            return view.integer(key), f"{view.pointer}/{key}"
+    return None
 
 
 def _read_light(view: JsonView, node: PlacedNode) -> Light:
