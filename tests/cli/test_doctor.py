@@ -88,6 +88,13 @@ def test_nodes_version_decides(monkeypatch, version, state):
     assert machine.check_node().state == state
 
 
+def test_without_node_the_cure_is_named(monkeypatch):
+    monkeypatch.setattr(machine.shutil, "which", lambda name: None)
+    check = machine.check_node()
+    assert check.state == "optional"
+    assert "nodejs" in check.fix
+
+
 def test_a_cache_that_cannot_be_written_is_reported(monkeypatch, tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("")
