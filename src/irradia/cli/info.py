@@ -64,7 +64,7 @@ def _materials(facts: SceneFacts) -> list[str]:
         "transmissive": facts.transmissive,
         "emissive": facts.emissive,
         "unlit": facts.unlit,
-        "double-sided": facts.double_sided,
+        "two-sided": facts.double_sided,
     }
     return [f"  {label:<12}{_listed(names)}" for label, names in groups.items() if names]
 
