@@ -134,7 +134,11 @@ def test_ctrl_c_leaves_nothing_and_says_how_to_go_on(tmp_path):
         "64",
     ]
     running = subprocess.Popen(
-        [sys.executable, "-m", "irradia", *command], stderr=subprocess.PIPE, text=True, bufsize=1
+        [sys.executable, "-m", "irradia", *command],
+        stderr=subprocess.PIPE,
+        text=True,
+        # Where tests run in the background, shells have them ignore SIGINT, and children inherit that.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     assert running.stderr is not None
     watchdog = threading.Timer(60.0, running.kill)
