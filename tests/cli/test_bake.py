@@ -133,13 +133,12 @@ def test_ctrl_c_leaves_nothing_and_says_how_to_go_on(tmp_path):
         "--resolution",
         "64",
     ]
-    running = subprocess.Popen(
-        [sys.executable, "-m", "irradia", *command],
-        stderr=subprocess.PIPE,
-        text=True,
-        # Where tests run in the background, shells have them ignore SIGINT, and children inherit that.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    # Where tests run in the background, shells have them ignore SIGINT, and children inherit that.
+    program = (
+        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+        "from irradia.cli import main; main()"
     )
+    running = subprocess.Popen([sys.executable, "-c", program, *command], stderr=subprocess.PIPE, text=True)
     assert running.stderr is not None
     watchdog = threading.Timer(60.0, running.kill)
     watchdog.start()
