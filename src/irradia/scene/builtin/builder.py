@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from irradia.scene.builtin.material_json import material_json
 from irradia.scene.builtin.mesh import Mesh
+from irradia.scene.builtin.png import encode_png
 from irradia.scene.gltf.document import GltfDocument, Json
 from irradia.scene.types import U8, Camera, Light, Material, Rgb, TextureRef
 
@@ -217,27 +218,6 @@ class SceneBuilder:
         entries = self._json.setdefault(key, [])
         entries.append(value)
         return len(entries) - 1
-
-
-def encode_png(pixels: U8) -> bytes:
-    """PNG bytes of (H, W, 3) or (H, W, 4) 8-bit values; the same pixels give the same bytes.
-
-    Up to 256 opaque colours are written as a palette, which halves the file.
-    """
-    import io
-
-    from PIL import Image as PilImage
-
-    stream = io.BytesIO()
-    image = PilImage.fromarray(pixels)
-    if pixels.shape[2] == 3:
-        packed = pixels.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], np.uint32)
-        colours, index = np.unique(packed, return_inverse=True)
-        if len(colours) <= 256:
-            image = PilImage.fromarray(index.reshape(packed.shape).astype(np.uint8), "P")
-            image.putpalette(colours.astype(">u4").tobytes(), "XRGB")
-    image.save(stream, "PNG", compress_level=9)
-    return stream.getvalue()
 
 
 def _number(value: float) -> float:

@@ -29,7 +29,7 @@ SUN_LUX = (116690.0, 96100.0, 74080.0)
 
 
 def build() -> GltfDocument:
-    """About 150,000 triangles in some 300 nodes; repeated parts share meshes."""
+    """About 175,000 triangles in some 300 nodes; repeated parts share meshes."""
     scene = SceneBuilder("atrium")
     materials = add_materials(scene)
     for add in (

@@ -17,6 +17,8 @@ from irradia.scene.builtin.shapes import bevelled_box, box, disc
 from irradia.scene.builtin.sweep import lathe, moulding, square_moulding, sweep_arc
 
 _HALF_WALL = plan.LOWER_WALL / 2
+_SMALL_ARCHIVOLT = [(0.0, 0.0), (0.024, 0.0), (0.024, 0.055), (0.045, 0.085), (0.045, 0.12), (0.0, 0.12)]
+"""The gallery's bands round its arches: as :func:`archivolt`, with fewer members."""
 
 
 def add_arcades(scene: SceneBuilder, materials: Materials) -> None:
@@ -64,7 +66,7 @@ def upper_bay(materials: Materials) -> list[tuple[Mesh, int]]:
     radius, spring = plan.UPPER_RADIUS, plan.UPPER_SPRING_Y
     panel = arch_panel(plan.UPPER_BAY / 2, spring, plan.CEILING_Y, radius, spring, 14)
     stone = join(
-        sweep_arc(archivolt(0.12, 0.045, n=2), radius, 14).moved(0, spring, half),
+        sweep_arc(_SMALL_ARCHIVOLT, radius, 14).moved(0, spring, half),
         keystone(radius, 0.19, half).moved(y=spring),
         soffit(radius, spring, plan.UPPER_WALL, 14).moved(z=half),
     )
@@ -98,7 +100,7 @@ def great_arch(materials: Materials) -> list[tuple[Mesh, int]]:
     ]
 
 
-def archivolt(width: float, depth: float, n: int = 4) -> Array:
+def archivolt(width: float, depth: float) -> Array:
     """Profile of the band round an arch, from the soffit's edge outward: (proud of the wall, radial)."""
     w, d = width, depth
     return profiles.chain(
@@ -107,7 +109,7 @@ def archivolt(width: float, depth: float, n: int = 4) -> Array:
         (0.45 * d, 0.34 * w),
         (0.62 * d, 0.36 * w),
         (0.62 * d, 0.66 * w),
-        profiles.cyma(0.64 * d, d, 0.68 * w, 0.20 * w, n),
+        profiles.cyma(0.64 * d, d, 0.68 * w, 0.20 * w, 4),
         (d, 0.94 * w),
         (0.0, w),
     )

@@ -54,7 +54,7 @@ def _throw(name: str) -> Mesh:
     rng = Seed(1).child(name).numpy()
     half_width, front, behind = 0.62, rng.uniform(1.9, 2.5), 0.55
     path, slack = _over_rail(front, behind)
-    across = np.linspace(-1, 1, 19)
+    across = np.linspace(-1, 1, 17)
     phase = rng.uniform(0, 2 * np.pi)
     folds = 0.035 * np.sin(3.1 * np.pi * across + phase) + 0.018 * np.sin(7.3 * np.pi * across + 2 * phase)
     loose = np.clip(slack / 1.1, 0, 1)
@@ -74,13 +74,13 @@ def _over_rail(front: float, behind: float) -> tuple[Array, Array]:
     and (N,) how far each point hangs below what last carries it.
     """
     gap, top, lip = 0.165, RAIL_M + 0.012, (0.63, 0.03)
-    hanging = np.linspace([lip[0], top - front], lip, 9)
-    t = np.linspace(0, 1, 8)[:, None]
+    hanging = np.linspace([lip[0], top - front], lip, 7)
+    t = np.linspace(0, 1, 6)[:, None]
     # From the string course's lip up to the rail the cloth sags a little.
     leaning = np.array(lip) * (1 - t) + np.array([gap, top - 0.10]) * t + [0.05, -0.06] * (t * (1 - t))
-    angle = np.linspace(0, np.pi, 7)
+    angle = np.linspace(0, np.pi, 6)
     over = np.stack([gap * np.cos(angle), top - 0.10 + 0.10 * np.sin(angle)], axis=1)
-    down = np.linspace([-gap, top - 0.10], [-gap, top - behind], 5)
+    down = np.linspace([-gap, top - 0.10], [-gap, top - behind], 3)
     path = np.concatenate([hanging[:-1], leaning[:-1], over, down[1:]])
     slack = np.concatenate(
         [lip[1] - hanging[:-1, 1], 0.25 * np.sin(np.pi * t[:-1, 0]), 0 * angle, top - 0.10 - down[1:, 1]]
@@ -97,7 +97,7 @@ def _curtain(side: int) -> Mesh:
     edge = plan.ARCH_RADIUS - 0.06
     outer = edge - 0.10 * np.sin(np.pi * reach) - 0.05 * (below + (reach <= 0))
     width = 0.34 + (2 * edge - 0.49) * reach**1.7 + 0.26 * np.sqrt(below)
-    across = np.linspace(0, 1, 49)
+    across = np.linspace(0, 1, 41)
     x = side * (outer[None] - width[None] * across[:, None])
     # Folds as deep as they are wide apart, or the offset faces of the shell would cross.
     depth = 0.25 * width / _N_FOLDS

@@ -44,7 +44,7 @@ def add_columns(scene: SceneBuilder, materials: Materials) -> None:
         scene.node(f"corner pier {k}", mesh=pier, translation=(x, 0, z))
 
 
-def base(radius: float, height: float, n_sides: int, n: int = 4) -> Mesh:
+def base(radius: float, height: float, n_sides: int, n: int = 3) -> Mesh:
     """Plinth and attic base: torus, scotia, torus, between fillets."""
     plinth = 0.36 * height
     part = (height - plinth) / 10
@@ -79,14 +79,14 @@ def shaft(bottom_radius: float, top_radius: float, low_y: float, high_y: float, 
 
 
 def capital(radius: float, low_y: float, high_y: float, half_abacus: float, n_sides: int) -> Mesh:
-    """A bell with two rows of leaves, scrolls under the corners, and an abacus."""
+    """A bell with eight leaves below and four above, which reach for the corners' scrolls; an abacus."""
     abacus = 0.15
     bell_height = high_y - low_y - abacus
     top = high_y - abacus
     t = np.linspace(0, 1, 7)
     bell = np.stack([radius + (half_abacus * 0.80 - radius) * t**2.6, low_y + bell_height * t], axis=1)
     leaves = []
-    for row, (share, n, turn) in enumerate([(0.62, 8, 0.0), (0.95, 8, 22.5)]):
+    for row, (share, n, turn) in enumerate([(0.62, 8, 22.5), (0.95, 4, 45.0)]):
         foot = radius + 0.012 + 0.008 * row
         spine = _leaf_spine(foot, low_y + 0.01, share * bell_height, 0.075 + 0.05 * row)
         blade = leaf(spine, 0.135 - 0.02 * row, 0.016)

@@ -76,7 +76,7 @@ def _basin(materials: Materials) -> list[tuple[Mesh, int]]:
     water = disc(1.40 - 0.14, 0.44, 8).turned(22.5)
     return [
         (join(step, _octagonal(wall, 1.40).moved(y=0.15)), materials.limestone),
-        (lathe(stem, 28), materials.white_marble),
+        (lathe(stem, 20), materials.white_marble),
         (water.moved(y=0.02), materials.water),
     ]
 

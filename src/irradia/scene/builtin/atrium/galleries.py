@@ -66,7 +66,7 @@ def _add_floors(scene: SceneBuilder, materials: Materials) -> None:
     scene.object("gallery edge", (join(edge, mirrored), materials.limestone))
 
 
-def baluster(height: float, n_sides: int = 7) -> Mesh:
+def baluster(height: float, n_sides: int = 6) -> Mesh:
     """A turned vase baluster between two square blocks."""
     block = 0.075
     low, high = block, height - block

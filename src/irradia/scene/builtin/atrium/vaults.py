@@ -60,7 +60,7 @@ def _rib(half_span: float, width: float) -> Mesh:
         (-half, 0.10), (-half, -drop + cut), (-half + cut, -drop),
         (half - cut, -drop), (half, -drop + cut), (half, 0.10),
     ]  # fmt: skip
-    return sweep_arc(profile, half_span, 20, rise=RISE).moved(y=plan.SPRING_Y)
+    return sweep_arc(profile, half_span, 16, rise=RISE).moved(y=plan.SPRING_Y)
 
 
 def _pilaster() -> Mesh:
