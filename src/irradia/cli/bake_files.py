@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from irradia.cli.bake_job import Baked, BakeJob
 from irradia.cli.memory import peak_memory_bytes
 from irradia.core import provenance
-from irradia.core.colour import automatic_exposure_ev, preview_srgb8
+from irradia.core.colour import automatic_exposure_ev, picture_srgb8
 from irradia.core.files import write_text_atomic
 from irradia.core.progress import Progress
 from irradia.formats.lightmap import LightmapFile, make_lightmap, page_path, write_lightmap
@@ -123,7 +123,7 @@ def _write_picture(path: Path, radiance: NDArray[np.float32]) -> None:
     """What the report shows as baked, for use elsewhere."""
     from irradia.formats.png import write_png
 
-    write_png(path, preview_srgb8(radiance, automatic_exposure_ev(radiance)))
+    write_png(path, picture_srgb8(radiance, automatic_exposure_ev(radiance)))
 
 
 def _write_previews(path: Path, lightmap: LightmapFile) -> None:
@@ -131,4 +131,4 @@ def _write_previews(path: Path, lightmap: LightmapFile) -> None:
     from irradia.formats.png import write_png
 
     for page, pixels in enumerate(lightmap.pages):
-        write_png(page_path(path, page), preview_srgb8(pixels, lightmap.exposure_ev))
+        write_png(page_path(path, page), picture_srgb8(pixels, lightmap.exposure_ev))

@@ -87,7 +87,7 @@ def command(as_json: bool, scene: str, out: Path, baked: bool, **choices: Any) -
 
 def write_image(out: Path, image: NDArray[np.float32], exposure_ev: float | None) -> float:
     """Writes linear radiance, or a picture of it; returns the exposure, automatic where None is given."""
-    from irradia.core.colour import automatic_exposure_ev, preview_srgb8
+    from irradia.core.colour import automatic_exposure_ev, picture_srgb8
 
     exposure = automatic_exposure_ev(image) if exposure_ev is None else exposure_ev
     suffix = out.suffix.lower()
@@ -102,7 +102,7 @@ def write_image(out: Path, image: NDArray[np.float32], exposure_ev: float | None
     else:
         from irradia.formats.png import write_png
 
-        write_png(out, preview_srgb8(image, exposure))
+        write_png(out, picture_srgb8(image, exposure))
     return exposure
 
 

@@ -44,3 +44,14 @@ def preview_srgb8(rgb: ArrayLike, exposure_ev: float) -> NDArray[np.uint8]:
     """8-bit sRGB pixels of linear ``rgb`` at an exposure in stops."""
     exposed = np.asarray(rgb, np.float32) * np.float32(2.0**exposure_ev)
     return np.round(srgb_from_linear(exposed) * 255.0).astype(np.uint8)
+
+
+def picture_srgb8(rgb: ArrayLike, exposure_ev: float) -> NDArray[np.uint8]:
+    """8-bit sRGB pixels for people to look at: highlights roll off instead of clipping.
+
+    Below half of white nothing changes; above, each channel approaches white exponentially, with
+    the same slope at the join.
+    """
+    exposed = np.maximum(np.asarray(rgb, np.float32), 0.0) * np.float32(2.0**exposure_ev)
+    shoulder = 1.0 - 0.5 * np.exp(1.0 - 2.0 * np.maximum(exposed, 0.5))
+    return np.round(srgb_from_linear(np.where(exposed > 0.5, shoulder, exposed)) * 255.0).astype(np.uint8)

@@ -8,7 +8,7 @@ import io
 import numpy as np
 from numpy.typing import NDArray
 
-from irradia.core.colour import preview_srgb8
+from irradia.core.colour import picture_srgb8
 
 U8 = NDArray[np.uint8]
 F32 = NDArray[np.float32]
@@ -33,7 +33,7 @@ _ERROR_STOPS_SRGB8 = np.array(
 
 def display(radiance: F32, exposure_ev: float) -> U8:
     """8-bit sRGB pixels of (H, W, 3) linear radiance."""
-    return preview_srgb8(np.nan_to_num(radiance, nan=0.0, posinf=0.0, neginf=0.0), exposure_ev)
+    return picture_srgb8(np.nan_to_num(radiance, nan=0.0, posinf=0.0, neginf=0.0), exposure_ev)
 
 
 def error_colours(error: F32) -> U8:
