@@ -13,6 +13,7 @@ from irradia.scene.lightmap_uv.options import LayoutOptions
 from irradia.scene.lightmap_uv.pack import Placement
 from irradia.scene.lightmap_uv.pieces import Piece
 from irradia.scene.lightmap_uv.receivers import Receiver, find_receivers
+from irradia.scene.lightmap_uv.shared import shared_layout, shares_one_page
 from irradia.scene.lightmap_uv.unwrap import triangle_areas
 from irradia.scene.types import Scene
 
@@ -22,8 +23,8 @@ def layout_lightmap(scene: Scene, options: LayoutOptions, progress: Progress) ->
 
     The file's TEXCOORD_1 is kept where it lies in the unit square without overlap; everything else is
     unwrapped. Charts of a primitive that stands in one place are packed one by one; a primitive with
-    several instances, or with uv of its own, has one rectangle for each. The same scene and options
-    give the same bytes.
+    several instances, or with uv of its own, has one rectangle for each; where all have uv of their
+    own that don't overlap, that is the page. The same scene and options give the same bytes.
 
     Args:
         scene: Unlit materials and a lightmap scale of 0 take no lightmap.
@@ -36,6 +37,8 @@ def layout_lightmap(scene: Scene, options: LayoutOptions, progress: Progress) ->
     receivers, notes = find_receivers(scene, progress, use_cache=options.use_cache)
     if not receivers:
         return _empty(scene, ("nothing in the scene takes a lightmap",))
+    if shares_one_page(receivers):
+        return shared_layout(scene, receivers, options, notes)
     with progress.stage("pack"):
         plan = make_plan(receivers, options)
     return _assemble(scene, receivers, plan, notes)

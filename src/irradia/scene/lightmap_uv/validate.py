@@ -10,7 +10,7 @@ from irradia.scene.types import F32, U32, Primitive
 
 _SLACK = 1e-4  # exporters overshoot the unit square by rounding
 _MAX_FLAT_SHARE = 1e-3  # of the surface may have no area on the page
-_MAX_OVERLAP_SHARE = 1e-3  # of the covered points may lie under two triangles
+MAX_OVERLAP_SHARE = 1e-3  # of the covered points may lie under two triangles
 _MIN_GRID, _MAX_GRID = 512, 4096
 
 
@@ -43,12 +43,12 @@ def _defect(primitive: Primitive, uv: F32) -> str | None:
     world = triangle_areas(primitive.positions, primitive.indices)
     if flat.all() or world[flat].sum() > _MAX_FLAT_SHARE * world.sum():
         return "folds triangles to nothing"
-    if _overlap_share(uv, primitive.indices) > _MAX_OVERLAP_SHARE:
+    if overlap_share(uv, primitive.indices) > MAX_OVERLAP_SHARE:
         return "overlaps itself"
     return None
 
 
-def _overlap_share(uv: F32, indices: U32) -> float:
+def overlap_share(uv: F32, indices: U32) -> float:
     """Share of the covered points of a grid that more than one triangle covers.
 
     The grid is fine enough to put some points into the average triangle.
