@@ -71,6 +71,14 @@ def test_no_light_means_exactly_no_light():
     assert not result.irradiance_over_pi.any()
 
 
+def test_materials_that_would_never_let_light_die_are_named():
+    scene = lit("furnace")
+    white = replace(scene.materials[0], name="mirror-white", base_color=(1.0, 1.0, 1.0, 1.0))
+    assert bake(scene, 64, 1).stats["clamped_materials"] == []
+    result = bake(replace(scene, materials=(white,)), 64, 1)
+    assert result.stats["clamped_materials"] == ["mirror-white"]
+
+
 @pytest.mark.parametrize("integrator", ["cached", "path"])
 def test_white_environment_is_never_exceeded(integrator):
     """A body in a uniform environment of 1 with ρ ≤ 1 can't gather more than 1."""

@@ -107,6 +107,10 @@ def bake_lightmap(
         mesh, texels = cover(scene, layout)
     with progress.stage("ray tracing set-up"):
         light = prepare(scene, mesh, layout, texels, options)
+    clamped = light.world.clamped_materials
+    if clamped:
+        names = ", ".join(name or "an unnamed material" for name in clamped)
+        progress.say(f"note: reflectance is limited to 0.98 in {names}")
     with progress.stage("hidden texels"):
         hidden_share = light.drop_hidden_subsamples()
     start = time.perf_counter()
@@ -115,6 +119,7 @@ def bake_lightmap(
     stats = _stats(light, options, epochs, launches, seconds)
     valid = hidden_share < 1.0
     stats["valid_share"] = float(valid.mean())
+    stats["clamped_materials"] = clamped
     pages = finish(texels, estimate, valid, denoise=options.denoise, progress=progress)
     return LightmapResult(texels, estimate, hidden_share, pages, stats)
 

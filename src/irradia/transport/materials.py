@@ -57,13 +57,13 @@ class MaterialTable:
 
     Attributes:
         flags: (n_materials,) NumPy: DOUBLE_SIDED | UNLIT | EMISSIVE | FILTERS.
-        clamped: Names of materials whose constant reflectance had to be clamped.
+        clamped: (n_materials,) NumPy: whether the factors alone ask for more than MAX_REFLECTANCE.
     """
 
     def __init__(self, materials: tuple[Material, ...], textures: TextureTable) -> None:
         self._textures = textures
         self.flags = np.array([_flags(m) for m in materials], np.uint32)
-        self.clamped = [m.name for m in materials if max(_constant_reflectance(m)) > MAX_REFLECTANCE]
+        self.clamped = np.array([max(_constant_reflectance(m)) > MAX_REFLECTANCE for m in materials])
         slots = np.array([_slots(m, textures) for m in materials], np.uint32).reshape(-1, _SLOTS_PER_ROW)
         self._textured = slots.any(axis=0)
         self._floats = mi.Float(np.array([_floats(m) for m in materials], np.float32).ravel())
@@ -176,6 +176,8 @@ def _slots(m: Material, textures: TextureTable) -> list[int]:
 
 def _constant_reflectance(m: Material) -> list[float]:
     """ρ from the factors alone, to warn about materials that would never let light die."""
+    if m.unlit:
+        return [0.0]
     f0 = ((m.ior - 1.0) / (m.ior + 1.0)) ** 2
     rho = []
     for base, tint in zip(m.base_color[:3], m.specular_color, strict=True):

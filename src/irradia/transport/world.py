@@ -57,6 +57,7 @@ class World:
     Attributes:
         filters: Whether any surface lets light through.
         double_sided: Whether any surface shines back from behind.
+        clamped_materials: Names of those in use that would reflect more than they may.
         fully_mapped: Whether every triangle that reflects has texels.
     """
 
@@ -68,6 +69,8 @@ class World:
         textures = TextureTable(scene.images)
         self.materials = MaterialTable(scene.materials, textures)
         textures.freeze()
+        used = np.unique(mesh.material)
+        self.clamped_materials = [scene.materials[i].name for i in used if self.materials.clamped[i]]
         self.geometry = Geometry(mesh, robust=robust)
         flags = self.materials.flags[mesh.material] | np.where(mesh.page >= 0, HAS_TEXEL, 0).astype(np.uint32)
         self._emits = bool((flags & EMISSIVE).any())
