@@ -23,6 +23,7 @@ U8 = NDArray[np.uint8]
 WrapMode = Literal["repeat", "clamp", "mirror"]
 AlphaMode = Literal["opaque", "mask", "blend"]
 LightKind = Literal["directional", "point", "spot"]
+LightMode = Literal["baked", "mixed", "realtime", "off"]
 
 
 @dataclass(frozen=True)
@@ -142,6 +143,10 @@ class Instance:
         node_index: The glTF node.
         gpu_instance: Index within EXT_mesh_gpu_instancing, or None.
         lightmap_scale: From ``extras.irradia.lightmapScale``; 0 takes no lightmap.
+        casts: Whether it blocks and reflects light for others.
+        lod_group: Which MSFT_lod family it belongs to, or None; members of one family don't see
+            each other.
+        lod_level: 0 is the finest, the one that the rest of the scene sees.
     """
 
     primitive: int
@@ -149,6 +154,22 @@ class Instance:
     node_index: int
     gpu_instance: int | None = None
     lightmap_scale: float = 1.0
+    casts: bool = True
+    lod_group: int | None = None
+    lod_level: int = 0
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class IesProfile:
+    """A measured luminous intensity distribution (IES LM-63), full sphere.
+
+    Attributes:
+        candela: (V, H) at equal steps of vertical angle 0 … 180° from the light's axis and of
+            horizontal angle 0 … 360°, first and last column the same direction.
+    """
+
+    candela: F32
     name: str = ""
 
 
@@ -160,7 +181,13 @@ class Light:
         intensity: Linear RGB: colour × intensity.
         direction: World-space unit vector along which light travels.
         angle_deg: Angular diameter of a directional light; 0 casts sharp shadows.
+        radius_m: Radius of a point or spot light's sphere; 0 casts sharp shadows.
         range_m: Cut-off distance, or None.
+        mode: ``baked``: all its light is in the maps. ``mixed``: its first bounce is lit live, with
+            a baked shadow mask. ``realtime``: its first bounce is lit and shadowed live. ``off``: it
+            has no part in the bake.
+        profile: Replaces the cone; ``intensity`` then multiplies its candela.
+        up: World-space unit vector across ``direction``: where the profile's horizontal 0° points.
     """
 
     kind: LightKind
@@ -171,6 +198,10 @@ class Light:
     inner_cone_rad: float = 0.0
     outer_cone_rad: float = 0.7853981633974483
     angle_deg: float = 0.0
+    radius_m: float = 0.0
+    mode: LightMode = "baked"
+    profile: IesProfile | None = None
+    up: Rgb = (0.0, 1.0, 0.0)
     name: str = ""
 
 
