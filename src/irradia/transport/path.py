@@ -214,7 +214,7 @@ def _bounce(
     reflectance = world.appearance(hit.triangle, hit.bary, active).reflectance
     throughput = ray.throughput * reflectance * stop_weight
     active = active & (dr.max(throughput) > 0.0)
-    arriving = direct(world, point, ray.sampler, mi.Float(1.0), active)
+    arriving = direct(world, point, ray.sampler, mi.Float(1.0), active).light
     ray.radiance += dr.select(active, throughput * arriving, 0.0)
 
     local = cosine_hemisphere(ray.sampler.next_2d())
@@ -234,13 +234,26 @@ def _bounce(
     return ray
 
 
+@dataclass
+class Arrival:
+    """One next-event sample.
+
+    Attributes:
+        light: What it adds to E/π, weighted against rays drawn.
+        direction: Where it comes from.
+    """
+
+    light: mi.Color3f
+    direction: mi.Vector3f
+
+
 def direct(
     world: World, point: SurfacePoint, sampler: Sampler, nee_ratio: mi.Float, active: mi.Bool
-) -> mi.Color3f:
+) -> Arrival:
     """One next-event sample of E/π at a surface point, MIS-weighted against cosine-drawn rays."""
     lights = world.lights
     if not lights.any:
-        return mi.Color3f(0.0)
+        return Arrival(mi.Color3f(0.0), mi.Vector3f(0.0, 0.0, 1.0))
     u, pick = sampler.next_2d(), sampler.next_1d()
     sample = lights.sample(world.geometry, world.emission, point, pick, u, active)
     cosine = dr.dot(point.ns, sample.direction)
@@ -250,4 +263,5 @@ def direct(
     weighed = nee_ratio * sample.pdf
     weight = dr.select(sample.pdf > 0.0, weighed / dr.maximum(weighed + ray_pdf, 1e-30), 1.0)
     arriving = world.transmittance(point.origin, sample.direction, sample.distance, above)
-    return dr.select(above, sample.weight * arriving * (ray_pdf * weight), 0.0)
+    light = dr.select(above, sample.weight * arriving * (ray_pdf * weight), 0.0)
+    return Arrival(light, sample.direction)

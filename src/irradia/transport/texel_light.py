@@ -180,7 +180,7 @@ class TexelLight:
         while k < last:
             point = self._subsamples.point(self.world, texel, k % self._subsamples.count)
             sampler = Sampler(mi.UInt32(k), mi.UInt32(texel_seed))
-            light += direct(self.world, point, sampler, ratio, mi.Bool(True))
+            light += direct(self.world, point, sampler, ratio, mi.Bool(True)).light
             k += 1
         return light
 
