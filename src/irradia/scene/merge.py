@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 from irradia.scene.layout import LightmapLayout
 from irradia.scene.types import F32, U32, Scene
 
+LEVEL_BITS = 8
+"""How much of :attr:`MergedMesh.lod` the level takes; the object's number stands above."""
+
 
 @dataclass(frozen=True)
 class MergedMesh:
@@ -25,6 +28,9 @@ class MergedMesh:
         material, instance: (T,) what each triangle belongs to.
         page: (T,) lightmap page, or −1.
         chart: (T,) chart number, unique over the whole layout, or 0xFFFFFFFF.
+        casts: (T,) whether rays meet the triangle; None where they meet all.
+        lod: (T,) the object, from 1, shifted by LEVEL_BITS, and its level of detail; 0 where the
+            triangle belongs to no such object. None where there is none at all.
     """
 
     positions: F32
@@ -37,6 +43,8 @@ class MergedMesh:
     instance: U32
     page: NDArray[np.int32]
     chart: U32
+    casts: NDArray[np.bool_] | None = None
+    lod: U32 | None = None
 
 
 def merge(scene: Scene, layout: LightmapLayout | None = None) -> MergedMesh:
@@ -44,32 +52,42 @@ def merge(scene: Scene, layout: LightmapLayout | None = None) -> MergedMesh:
     parts = [_place(scene, layout, index) for index in range(len(scene.instances))]
     first_vertex = np.cumsum([0, *(len(p.positions) for p in parts)])
     first_chart = np.cumsum([0, *(_chart_count(p) for p in parts)])
+    positions = _join([p.positions for p in parts], (0, 3), np.float32)
+    indices = [p.indices + np.uint32(f) for p, f in zip(parts, first_vertex, strict=False)]
+    charts = [
+        np.where(p.page >= 0, p.chart + np.uint32(f), np.uint32(0xFFFFFFFF))
+        for p, f in zip(parts, first_chart, strict=False)
+    ]
+    instance = _join([p.instance for p in parts], (0,), np.uint32)
     return MergedMesh(
-        positions=_join([p.positions for p in parts], (0, 3), np.float32),
+        positions=positions,
         normals=_join([p.normals for p in parts], (0, 3), np.float32),
         texcoords=_join([p.texcoords for p in parts], (0, 2, 2), np.float32),
         colors=_join([p.colors for p in parts], (0, 4), np.float32),
         lightmap_uv=_join([p.lightmap_uv for p in parts], (0, 2), np.float32),
-        indices=_start_at_smallest_corner(
-            _join([p.positions for p in parts], (0, 3), np.float32),
-            _join(
-                [p.indices + np.uint32(f) for p, f in zip(parts, first_vertex, strict=False)],
-                (0, 3),
-                np.uint32,
-            ),
-        ),
+        indices=_start_at_smallest_corner(positions, _join(indices, (0, 3), np.uint32)),
         material=_join([p.material for p in parts], (0,), np.uint32),
-        instance=_join([p.instance for p in parts], (0,), np.uint32),
+        instance=instance,
         page=_join([p.page for p in parts], (0,), np.int32),
-        chart=_join(
-            [
-                np.where(p.page >= 0, p.chart + np.uint32(f), np.uint32(0xFFFFFFFF))
-                for p, f in zip(parts, first_chart, strict=False)
-            ],
-            (0,),
-            np.uint32,
-        ),
+        chart=_join(charts, (0,), np.uint32),
+        casts=_casts(scene, instance),
+        lod=_lod(scene, instance),
     )
+
+
+def _casts(scene: Scene, instance: U32) -> NDArray[np.bool_] | None:
+    casts = np.array([i.casts for i in scene.instances], np.bool_)
+    return None if casts.all() else casts[instance]
+
+
+def _lod(scene: Scene, instance: U32) -> U32 | None:
+    """See :attr:`MergedMesh.lod`; objects of a single level are as all others."""
+    if not any(i.lod_level for i in scene.instances):
+        return None
+    packed = [
+        0 if i.lod_group is None else (i.lod_group + 1) << LEVEL_BITS | i.lod_level for i in scene.instances
+    ]
+    return np.array(packed, np.uint32)[instance]
 
 
 def _chart_count(part: MergedMesh) -> int:

@@ -8,6 +8,7 @@ from irradia.scene.gltf.view import JsonView
 
 READ = frozenset(
     {
+        "EXT_lights_ies",
         "EXT_mesh_gpu_instancing",
         "EXT_meshopt_compression",
         "EXT_texture_webp",
@@ -25,6 +26,7 @@ READ = frozenset(
         "KHR_mesh_quantization",
         "KHR_meshopt_compression",
         "KHR_texture_transform",
+        "MSFT_lod",
     }
 )
 """Extensions whose data the import understands."""

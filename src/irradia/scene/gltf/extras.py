@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
+from irradia.core.names import did_you_mean
+from irradia.scene.gltf.notes import ImportNotes
 from irradia.scene.gltf.view import JsonView
 
 
@@ -14,3 +18,10 @@ def irradia_extras(view: JsonView) -> JsonView:
     if not isinstance(extras, dict) or not isinstance(extras.get("irradia"), dict):
         return JsonView({})
     return JsonView(extras["irradia"], f"{view.pointer}/extras/irradia")
+
+
+def note_unknown_keys(extras: JsonView, known: Collection[str], notes: ImportNotes) -> None:
+    """Notes settings that nobody reads; misspelt ones would be missed in silence."""
+    for key, view in extras.entries():
+        if key not in known:
+            notes.add(f"{view.pointer} is not a setting of Irradia's. {did_you_mean(key, known)}")

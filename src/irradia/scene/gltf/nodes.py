@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from irradia.core.errors import InputError
+from irradia.scene.gltf.lods import Lod, place_levels, read_lods, walk
 from irradia.scene.gltf.transforms import trs_matrix
 from irradia.scene.gltf.view import JsonView
 from irradia.scene.types import F64
@@ -38,12 +39,14 @@ class PlacedNode:
         index: Its place in ``/nodes``.
         world_from_node: (4, 4).
         weights: Morph weights that the pose sets, or None.
+        lod: The level of detail that it is part of, or None.
     """
 
     index: int
     view: JsonView
     world_from_node: F64
     weights: tuple[float, ...] | None = None
+    lod: Lod | None = None
 
     @property
     def name(self) -> str:
@@ -56,7 +59,8 @@ class Hierarchy:
     """All nodes of the file.
 
     Attributes:
-        scene: The nodes that the default scene shows, parents before children.
+        scene: The nodes that the default scene shows, parents before children, all levels of detail
+            among them.
         world_from_node: By node index, for nodes outside the scene too (a skin's joints may be).
     """
 
@@ -77,6 +81,9 @@ def read_hierarchy(root: JsonView, pose: Mapping[int, NodePose]) -> Hierarchy:
     nodes = root.items("nodes")
     children = [_indices(node, "children", len(nodes)) for node in nodes]
     roots = _roots(nodes, children)
+    lods = read_lods(nodes)
+    listed = _scene_roots(root, len(nodes))
+    children, roots, scene_roots = place_levels(lods, children, roots, listed or [])
     world: list[F64 | None] = [None] * len(nodes)
     stack = [(index, np.eye(4)) for index in roots]
     while stack:
@@ -88,8 +95,8 @@ def read_hierarchy(root: JsonView, pose: Mapping[int, NodePose]) -> Hierarchy:
     if len(placed) < len(nodes):
         cyclic = next(i for i, matrix in enumerate(world) if matrix is None)
         raise InputError("this node is its own ancestor", where=nodes[cyclic].pointer)
-    shown = _depth_first(_scene_roots(root, roots, len(nodes)), children)
-    scene = [PlacedNode(i, nodes[i], placed[i], pose.get(i, NodePose()).weights) for i in shown]
+    shown = walk(roots if listed is None else scene_roots, children, lods)
+    scene = [PlacedNode(i, nodes[i], placed[i], pose.get(i, NodePose()).weights, lod) for i, lod in shown]
     return Hierarchy(scene, placed)
 
 
@@ -105,24 +112,11 @@ def _roots(nodes: list[JsonView], children: list[list[int]]) -> list[int]:
     return [index for index in range(len(nodes)) if index not in parent]
 
 
-def _scene_roots(root: JsonView, roots: list[int], n_nodes: int) -> list[int]:
-    """The default scene's nodes; the first scene's, or all, where none is the default."""
+def _scene_roots(root: JsonView, n_nodes: int) -> list[int] | None:
+    """The default scene's nodes, or the first scene's where none is the default; None without scenes."""
     scenes = root.items("scenes")
     chosen = root.index("scene", len(scenes))
-    if not scenes:
-        return roots
-    return _indices(scenes[chosen or 0], "nodes", n_nodes)
-
-
-def _depth_first(roots: list[int], children: list[list[int]]) -> list[int]:
-    order: dict[int, None] = {}
-    stack = list(reversed(roots))
-    while stack:
-        index = stack.pop()
-        if index not in order:
-            order[index] = None
-            stack.extend(reversed(children[index]))
-    return list(order)
+    return _indices(scenes[chosen or 0], "nodes", n_nodes) if scenes else None
 
 
 def _indices(view: JsonView, key: str, count: int) -> list[int]:

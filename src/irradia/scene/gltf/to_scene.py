@@ -12,12 +12,12 @@ from irradia.scene.gltf.animation import sample_animations
 from irradia.scene.gltf.cameras import read_cameras
 from irradia.scene.gltf.document import GltfDocument
 from irradia.scene.gltf.extensions import check_extensions
-from irradia.scene.gltf.extras import irradia_extras
 from irradia.scene.gltf.instancing import read_gpu_instances
 from irradia.scene.gltf.lights import read_lights
 from irradia.scene.gltf.material_table import MaterialTable
 from irradia.scene.gltf.nodes import Hierarchy, NodePose, PlacedNode, read_hierarchy
 from irradia.scene.gltf.notes import ImportNotes
+from irradia.scene.gltf.object_settings import read_object_settings
 from irradia.scene.gltf.primitives import make_primitive
 from irradia.scene.gltf.skins import PosedSkin, pose_skin
 from irradia.scene.gltf.stored import StoredPrimitive, read_stored_primitive
@@ -53,6 +53,9 @@ def document_to_scene(
     geometry = _Geometry(root, accessors, hierarchy, MaterialTable(root, textures, variant, notes), notes)
     for node in hierarchy.scene:
         geometry.add(node)
+    finest = [node for node in hierarchy.scene if node.lod is None or node.lod.level == 0]
+    if len(finest) < len(hierarchy.scene):
+        notes.add("levels of detail (MSFT_lod): each has a lightmap, others are lit by the finest alone")
     if not geometry.instances:
         raise InputError(
             "this scene has no triangles to bake",
@@ -65,8 +68,8 @@ def document_to_scene(
         instances=tuple(geometry.instances),
         materials=geometry.materials.materials,
         images=textures.images,
-        lights=read_lights(root, hierarchy.scene),
-        cameras=read_cameras(root, hierarchy.scene, notes),
+        lights=read_lights(document, finest, notes),
+        cameras=read_cameras(root, finest, notes),
         notes=notes.lines(),
         document=document,
     )
@@ -146,10 +149,20 @@ class _Geometry:
         return visible
 
     def _place(self, node: PlacedNode, primitive: int, placements: list[tuple[int | None, F64]]) -> None:
-        scale = irradia_extras(node.view).number("lightmapScale", 1.0, minimum=0.0)
+        settings = read_object_settings(node.view, self._notes)
         for gpu_instance, world_from_object in placements:
             self.instances.append(
-                Instance(primitive, world_from_object, node.index, gpu_instance, scale, node.name)
+                Instance(
+                    primitive,
+                    world_from_object,
+                    node.index,
+                    gpu_instance,
+                    lightmap_scale=settings.lightmap_scale,
+                    casts=settings.casts,
+                    lod_group=node.lod.group if node.lod else None,
+                    lod_level=node.lod.level if node.lod else 0,
+                    name=node.name,
+                )
             )
 
     def _make(self, view: JsonView, key: tuple, name: str) -> int | None:
