@@ -1,38 +1,34 @@
-"""The traced mesh: Embree or OptiX holds bare triangles, everything else is in our own tables.
-
-Triangles that coincide exactly are traced once. Which of them is hit is then our decision, not the
-tracer's, whose choice varies from run to run: the front-facing one with the lowest number.
-"""
+"""The merged mesh on the device: what rays meet, and the surface at a point of it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from irradia.scene.merge import MergedMesh
 from irradia.transport.backend import dr, mi
+from irradia.transport.traced import Hit, TracedTriangles
 
-NONE = 0xFFFFFFFF
+__all__ = ["Geometry", "Hit", "SurfacePoint"]
+
 _RELATIVE_EPSILON = 1e-5
 
 
 @dataclass
-class Hit:
-    """What a ray met.
+class Sides:
+    """What light of either side counts, against the reflectance that its sum is multiplied by.
 
     Attributes:
-        valid: Whether it met anything.
-        t: Distance along the unit direction.
-        triangle: Of the merged mesh, already the right one among coincident ones.
-        bary: Weights of its second and third vertex.
+        front, behind: R and T over the surface's reflectance; 1 and 0 on an opaque one.
+        origin_behind: Where rays start on the back.
+        p_behind: How often the back is picked.
     """
 
-    valid: mi.Bool
-    t: mi.Float
-    triangle: mi.UInt32
-    bary: mi.Point2f
+    front: mi.Color3f
+    behind: mi.Color3f
+    origin_behind: mi.Point3f
+    p_behind: mi.Float
 
 
 @dataclass
@@ -46,24 +42,27 @@ class SurfacePoint:
             don't shade themselves, and off the plane by a rounding margin.
         ng: Geometric normal of the front, unit.
         ns: Interpolated vertex normal, unit, on the front's side.
+        lod: Level of detail that it belongs to, for rays from it; None where nothing has any.
+        sides: How much light from behind counts; None where no surface of the scene lets any through.
     """
 
     position: mi.Point3f
     origin: mi.Point3f
     ng: mi.Vector3f
     ns: mi.Vector3f
+    lod: mi.UInt32 | None = None
+    sides: Sides | None = None
 
 
 class Geometry:
-    """A merged mesh ready to be traced."""
+    """A merged mesh ready to be traced.
+
+    Attributes:
+        has_lods: Whether any object has levels of detail, which don't see each other.
+        centre, radius: Of a sphere around all of it.
+    """
 
     def __init__(self, mesh: MergedMesh, *, robust: bool = True) -> None:
-        unique, front, back = _merge_coincident(mesh)
-        self._twins = len(unique) < len(mesh.indices)
-        self._front = mi.UInt32(front) if self._twins else mi.UInt32()
-        self._back = mi.UInt32(back) if self._twins else mi.UInt32()
-        self._scene = _trace_scene(mesh, unique, robust)
-
         table = np.concatenate([mesh.indices, mesh.material[:, None]], axis=1)
         self._triangles = mi.UInt32(np.ascontiguousarray(table, np.uint32).ravel())
         vertices = np.zeros((len(mesh.positions), 8), np.float32)
@@ -82,30 +81,29 @@ class Geometry:
         low, high = mesh.positions.min(0), mesh.positions.max(0)
         self.centre = ((low + high) / 2).astype(float)
         self.radius = max(float(np.linalg.norm(high - low)) / 2, 1e-6)
+        self._traced = TracedTriangles(mesh, self.normal, self.step_past, robust=robust)
+        self.has_lods = self._traced.has_lods
 
-    def intersect(self, origin: mi.Point3f, direction: mi.Vector3f, active: mi.Bool) -> Hit:
-        """The nearest triangle."""
-        ray = mi.Ray3f(origin, direction)
-        pi = self._scene.ray_intersect_preliminary(ray, False, active)
-        hit = Hit(pi.is_valid() & active, pi.t, pi.prim_index, mi.Point2f(pi.prim_uv))
-        return self._pick_twin(hit, direction) if self._twins else hit
+    def intersect(
+        self, origin: mi.Point3f, direction: mi.Vector3f, active: mi.Bool, lod: mi.UInt32 | None = None
+    ) -> Hit:
+        """The nearest triangle; ``lod`` is that of the surface where the ray starts, if any."""
+        return self._traced.nearest(origin, direction, active, lod)
 
     def occluded(
-        self, origin: mi.Point3f, direction: mi.Vector3f, distance: mi.Float, active: mi.Bool
+        self,
+        origin: mi.Point3f,
+        direction: mi.Vector3f,
+        distance: mi.Float,
+        active: mi.Bool,
+        lod: mi.UInt32 | None = None,
     ) -> mi.Bool:
         """Whether anything at all lies nearer than ``distance``."""
-        ray = mi.Ray3f(origin, direction, distance, 0.0, [])
-        return self._scene.ray_test(ray, False, active)
+        return self._traced.occluded(origin, direction, distance, active, lod)
 
-    def _pick_twin(self, hit: Hit, direction: mi.Vector3f) -> Hit:
-        """Chooses among coincident triangles; a back twin's barycentrics are mirrored."""
-        front = dr.gather(mi.UInt32, self._front, hit.triangle, hit.valid)
-        back = dr.gather(mi.UInt32, self._back, hit.triangle, hit.valid)
-        from_front = dr.dot(self.normal(front, hit.valid), direction) < 0.0
-        mirrored = hit.valid & ~from_front & (back != NONE)
-        triangle = dr.select(mirrored, back, front)
-        bary = dr.select(mirrored, mi.Point2f(hit.bary.y, hit.bary.x), hit.bary)
-        return Hit(hit.valid, hit.t, triangle, bary)
+    def seen(self, triangle: mi.UInt32, lod: mi.UInt32, active: mi.Bool) -> mi.Bool:
+        """See :meth:`TracedTriangles.seen`; only in scenes with levels of detail."""
+        return self._traced.seen(triangle, lod, active)
 
     def vertices(self, triangle: mi.UInt32, active: mi.Bool) -> mi.Vector4u:
         """Three vertex numbers and the material."""
@@ -145,7 +143,8 @@ class Geometry:
             lift -= normal * (weight * dr.minimum(dr.dot(mi.Vector3f(position - corner), normal), 0.0))
         reach = dr.maximum(dr.max(dr.abs(a)), dr.maximum(dr.max(dr.abs(b)), dr.max(dr.abs(c))))
         margin = self._margin(reach)
-        return SurfacePoint(position, position + lift + ng * margin, ng, ns)
+        lod = self._traced.lod(triangle, active)
+        return SurfacePoint(position, position + lift + ng * margin, ng, ns, lod)
 
     def texcoords(
         self, triangle: mi.UInt32, bary: mi.Point2f, active: mi.Bool
@@ -162,6 +161,15 @@ class Geometry:
                 colour += dr.gather(mi.Vector4f, self._colours, i, active) * w
         return uv0, uv1, colour if self._has_colours else mi.Vector4f(1.0)
 
+    def uv_areas(self, triangle: mi.UInt32, active: mi.Bool) -> tuple[mi.Float, mi.Float]:
+        """The triangle's area in either texture coordinate set."""
+        index = self.vertices(triangle, active)
+        first = [self._vertex(i, active)[2] for i in (index.x, index.y, index.z)]
+        if not self._has_second_uv:
+            return _area(*first), mi.Float(0.0)
+        second = [dr.gather(mi.Point2f, self._second_uv, i, active) for i in (index.x, index.y, index.z)]
+        return _area(*first), _area(*second)
+
     def step_past(self, origin: mi.Point3f, direction: mi.Vector3f, t: mi.Float) -> mi.Point3f:
         """A point just behind the surface at ``t``, for rays that are let through."""
         there = origin + direction * t
@@ -172,53 +180,6 @@ class Geometry:
         return (magnitude + 0.1 * self.radius) * _RELATIVE_EPSILON
 
 
-def _merge_coincident(mesh: MergedMesh) -> tuple[NDArray[np.uint32], NDArray[np.uint32], NDArray[np.uint32]]:
-    """Finds triangles with the same three corners.
-
-    Returns:
-        The triangles to trace (the lowest of each group, ascending), and for each the lowest
-        triangle with that winding and the lowest with the opposite one, or NONE. Triangles start
-        at their smallest corner (see ``merge``), so windings compare vertex by vertex.
-    """
-    corners = mesh.positions[mesh.indices] + np.float32(0.0)  # −0 and 0 are one place
-    words = np.ascontiguousarray(corners).view(np.uint32).reshape(-1, 3, 3)
-    flipped = words[:, [0, 2, 1]]
-    winding = _lexicographic_less(words[:, 1], words[:, 2])
-    key = np.where(winding[:, None, None], words, flipped).reshape(-1, 9)
-    rows = np.ascontiguousarray(key).view([("", np.uint32)] * 9).ravel()
-    _, first, group = np.unique(rows, return_index=True, return_inverse=True)
-    n_groups = len(first)
-    numbers = np.arange(len(rows), dtype=np.uint32)
-    by_winding = np.full((2, n_groups), NONE, np.uint32)
-    for side in (0, 1):
-        chosen = winding == bool(side)
-        np.minimum.at(by_winding[side], group[chosen], numbers[chosen])
-    order = np.argsort(first)
-    unique = first[order].astype(np.uint32)
-    own = winding[unique].astype(int)
-    columns = np.arange(n_groups)
-    sorted_sides = by_winding[:, order]
-    return unique, sorted_sides[own, columns], sorted_sides[1 - own, columns]
-
-
-def _lexicographic_less(a: NDArray[np.uint32], b: NDArray[np.uint32]) -> NDArray[np.bool_]:
-    less, equal = a < b, a == b
-    return less[:, 0] | equal[:, 0] & (less[:, 1] | equal[:, 1] & less[:, 2])
-
-
-def _trace_scene(mesh: MergedMesh, unique: NDArray[np.uint32], robust: bool) -> mi.Scene:
-    """Hands bare triangles to the tracer."""
-    traced = mi.Mesh(
-        "scene", len(mesh.positions), len(unique), has_vertex_normals=False, has_vertex_texcoords=False
-    )
-    params = mi.traverse(traced)
-    params["vertex_positions"] = mi.Float(mesh.positions.ravel())
-    params["faces"] = mi.UInt32(mesh.indices[unique].ravel())
-    params.update()
-    # One thread builds the tree: with two its shape, and so the pick among touching faces, varies.
-    threads = dr.thread_count()
-    dr.set_thread_count(1)
-    try:
-        return mi.load_dict({"type": "scene", "mesh": traced, "embree_use_robust_intersections": robust})
-    finally:
-        dr.set_thread_count(threads)
+def _area(a: mi.Point2f, b: mi.Point2f, c: mi.Point2f) -> mi.Float:
+    first, second = b - a, c - a
+    return 0.5 * dr.abs(first.x * second.y - first.y * second.x)

@@ -19,8 +19,9 @@ from typing import Protocol
 
 from irradia.transport.backend import dr, mi
 from irradia.transport.geometry import Hit, SurfacePoint
-from irradia.transport.materials import DOUBLE_SIDED, EMISSIVE, FILTERS, UNLIT
+from irradia.transport.materials import DOUBLE_SIDED, EMISSIVE, FILTERS, TRANSLUCENT, UNLIT
 from irradia.transport.sampling import Sampler, cosine_hemisphere, to_world
+from irradia.transport.sides import mirrored_to_front, pick_side
 from irradia.transport.world import HAS_TEXEL, TriangleRecord, World
 
 _ROULETTE_FROM = 4
@@ -28,7 +29,13 @@ _MAX_SEGMENTS = 1024  # a ray caught between numerically coincident panes ends h
 
 
 class LightCache(Protocol):
-    """Stored light of mapped surfaces."""
+    """Stored light of mapped surfaces.
+
+    Attributes:
+        everywhere: Whether it answers for surfaces without texels too, so that no path goes on.
+    """
+
+    everywhere: bool
 
     def outgoing(self, world: World, hit: Hit, record: TriangleRecord, active: mi.Bool) -> mi.Color3f:
         """Radiance that leaves the front of a surface, emission not counted."""
@@ -50,6 +57,7 @@ class Segment:
         bounces, segments: Counters.
         sampler: Its random numbers.
         active: Whether it goes on.
+        lod: Level of detail of the surface where it started; None where nothing has any.
     """
 
     origin: mi.Point3f
@@ -63,6 +71,7 @@ class Segment:
     segments: mi.UInt32
     sampler: Sampler
     active: mi.Bool
+    lod: mi.UInt32 | None = None
 
 
 def start(
@@ -72,6 +81,7 @@ def start(
     nee_ratio: mi.Float,
     sampler: Sampler,
     active: mi.Bool,
+    lod: mi.UInt32 | None = None,
 ) -> Segment:
     """A ray that has gathered nothing yet."""
     zero = mi.UInt32(0)
@@ -87,6 +97,7 @@ def start(
         segments=mi.UInt32(0),
         sampler=Sampler(mi.UInt32(sampler.index), mi.UInt32(sampler.seed)),
         active=mi.Bool(active),
+        lod=lod,
     )
 
 
@@ -101,6 +112,8 @@ def trace(
         cache: Light of mapped surfaces, or None for a pure path tracer.
         cull_backs: Camera rays pass through single-sided surfaces seen from behind, as in engines.
     """
+    if world.geometry.has_lods:
+        ray.lod = mi.UInt32(0 if ray.lod is None else ray.lod)
     if cache is not None and world.straight and not cull_backs:
         return _advance(world, ray, cache, cull_backs)
 
@@ -112,7 +125,7 @@ def trace(
 
 def _advance(world: World, ray: Segment, cache: LightCache | None, cull_backs: bool) -> Segment:
     """One segment: to the next surface, and what happens there."""
-    hit = world.geometry.intersect(ray.origin, ray.direction, ray.active)
+    hit = world.geometry.intersect(ray.origin, ray.direction, ray.active, ray.lod)
 
     # ---- out of the scene ----
     missed = ray.active & ~hit.valid
@@ -134,7 +147,7 @@ def _advance(world: World, ray: Segment, cache: LightCache | None, cull_backs: b
     ray.radiance += dr.select(known, ray.throughput * cache.outgoing(world, hit, record, known), 0.0)
     special = met & ~known
     if not cull_backs:
-        special &= ~(plain & back & ((record.flags & DOUBLE_SIDED) == 0))
+        special &= ~(plain & back & ((record.flags & (DOUBLE_SIDED | TRANSLUCENT)) == 0))
     if world.plain and not cull_backs:
         return ray
 
@@ -178,13 +191,15 @@ def _meet(
     # ---- emission met on the way, weighed against next-event estimation ----
     ray.travelled += dr.select(active, hit.t, 0.0)
     cos_light = dr.dot(record.ng, ray.direction) * dr.rsqrt(dr.maximum(dr.squared_norm(record.ng), 1e-37))
-    light_pdf = world.lights.area_pdf(hit.triangle, ray.travelled, cos_light, stops)
+    started = ray.origin + ray.direction * (hit.t - ray.travelled)
+    light_pdf = world.lights.area_pdf(hit.triangle, started, ray.travelled, cos_light, stops)
     emitted = world.emission(hit.triangle, hit.bary, back, stops)
     weight = stop_weight * _ray_weight(ray, light_pdf)
     ray.radiance += dr.select(stops, ray.throughput * emitted * weight, 0.0)
 
-    # ---- a back reflects nothing; a mapped front may know its light ----
-    ends = stops & ((back & one_sided) | ((record.flags & UNLIT) != 0))
+    # ---- an opaque back reflects nothing; a mapped front may know its light ----
+    dark = back & one_sided & ((record.flags & TRANSLUCENT) == 0)
+    ends = stops & (dark | ((record.flags & UNLIT) != 0))
     if cache is not None:
         known = stops & ~ends & ~back & ((record.flags & HAS_TEXEL) != 0)
         ray.radiance += dr.select(known, ray.throughput * cache.outgoing(world, hit, record, known), 0.0)
@@ -217,21 +232,56 @@ def _bounce(
     arriving = direct(world, point, ray.sampler, mi.Float(1.0), active).light
     ray.radiance += dr.select(active, throughput * arriving, 0.0)
 
-    local = cosine_hemisphere(ray.sampler.next_2d())
-    direction = to_world(point.ns, local)
-    goes_on = active & (dr.dot(direction, point.ng) > 0.0) & (local.z > 0.0)
+    leaving = draw_ray(point, ray.sampler)
+    throughput = throughput * leaving.weight
+    goes_on = active & leaving.above
     survival = dr.select(ray.bounces >= _ROULETTE_FROM, dr.minimum(dr.max(throughput), 0.95), 1.0)
     goes_on &= ray.sampler.next_1d() < survival
 
     ray.throughput = dr.select(goes_on, throughput / survival, ray.throughput)
-    ray.origin = dr.select(goes_on, point.origin, ray.origin)
-    ray.direction = dr.select(goes_on, direction, ray.direction)
-    ray.pdf = dr.select(goes_on, local.z * (1.0 / math.pi), ray.pdf)
+    ray.origin = dr.select(goes_on, leaving.origin, ray.origin)
+    ray.direction = dr.select(goes_on, leaving.direction, ray.direction)
+    ray.pdf = dr.select(goes_on, leaving.pdf, ray.pdf)
     ray.nee_ratio = dr.select(goes_on, 1.0, ray.nee_ratio)
     ray.travelled = dr.select(goes_on, 0.0, ray.travelled)
     ray.bounces = dr.select(active, ray.bounces + 1, ray.bounces)
+    if point.lod is not None:
+        ray.lod = dr.select(goes_on, point.lod, ray.lod)
     ray.active = goes_on
     return ray
+
+
+@dataclass
+class LeavingRay:
+    """A cosine-distributed ray from a surface point.
+
+    Attributes:
+        origin, direction: The ray.
+        pdf: Solid-angle density of its direction.
+        arrives_from: The direction above the surface that its light counts as coming from.
+        weight: What its radiance is multiplied by: 1, but for surfaces that light comes through.
+        above: Whether the ray leaves the surface at all.
+    """
+
+    origin: mi.Point3f
+    direction: mi.Vector3f
+    pdf: mi.Float
+    arrives_from: mi.Vector3f
+    weight: mi.Color3f
+    above: mi.Bool
+
+
+def draw_ray(point: SurfacePoint, sampler: Sampler) -> LeavingRay:
+    """Draws a ray from the front, or from behind where light comes through diffusely."""
+    chosen, weight = point, mi.Color3f(1.0)
+    if point.sides is not None:
+        side = pick_side(point, point.sides, sampler)
+        chosen, weight = side.point, side.weight
+    local = cosine_hemisphere(sampler.next_2d())
+    direction = to_world(chosen.ns, local)
+    above = (dr.dot(direction, chosen.ng) > 0.0) & (local.z > 0.0)
+    arrives_from = direction if point.sides is None else mirrored_to_front(direction, point.ns)
+    return LeavingRay(chosen.origin, direction, local.z * (1.0 / math.pi), arrives_from, weight, above)
 
 
 @dataclass
@@ -240,11 +290,13 @@ class Arrival:
 
     Attributes:
         light: What it adds to E/π, weighted against rays drawn.
-        direction: Where it comes from.
+        direction: Where it comes from; above the surface, also for light that comes through it.
+        live: Whether its light is lit live, so that its first bounce stays out of the maps.
     """
 
     light: mi.Color3f
     direction: mi.Vector3f
+    live: mi.Bool
 
 
 def direct(
@@ -253,15 +305,20 @@ def direct(
     """One next-event sample of E/π at a surface point, MIS-weighted against cosine-drawn rays."""
     lights = world.lights
     if not lights.any:
-        return Arrival(mi.Color3f(0.0), mi.Vector3f(0.0, 0.0, 1.0))
+        return Arrival(mi.Color3f(0.0), mi.Vector3f(0.0, 0.0, 1.0), mi.Bool(False))
+    if point.sides is not None:
+        side = pick_side(point, point.sides, sampler)
+        arrival = direct(world, side.point, sampler, nee_ratio, active)
+        direction = mirrored_to_front(arrival.direction, point.ns)
+        return Arrival(arrival.light * side.weight, direction, arrival.live)
     u, pick = sampler.next_2d(), sampler.next_1d()
-    sample = lights.sample(world.geometry, world.emission, point, pick, u, active)
+    sample = lights.sample(world.geometry, world.emission_seen_from(point), point, pick, u, active)
     cosine = dr.dot(point.ns, sample.direction)
     above = active & (cosine > 0.0) & (dr.dot(point.ng, sample.direction) > 0.0)
     above &= dr.max(sample.weight) > 0.0
     ray_pdf = cosine * (1.0 / math.pi)
     weighed = nee_ratio * sample.pdf
     weight = dr.select(sample.pdf > 0.0, weighed / dr.maximum(weighed + ray_pdf, 1e-30), 1.0)
-    arriving = world.transmittance(point.origin, sample.direction, sample.distance, above)
+    arriving = world.transmittance(point.origin, sample.direction, sample.distance, above, point.lod)
     light = dr.select(above, sample.weight * arriving * (ray_pdf * weight), 0.0)
-    return Arrival(light, sample.direction)
+    return Arrival(light, sample.direction, lights.is_live(sample.punctual, above))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,20 +12,18 @@ from irradia.core import InputError
 from irradia.scene.merge import MergedMesh
 from irradia.scene.types import Scene
 from irradia.transport.backend import dr, mi
-from irradia.transport.emissive import EmissiveTriangles
-from irradia.transport.environment_light import EnvironmentLight
-from irradia.transport.geometry import Geometry, SurfacePoint
-from irradia.transport.lights import Lights
+from irradia.transport.geometry import Geometry, Sides, SurfacePoint
+from irradia.transport.light_setup import make_lights
 from irradia.transport.materials import (
     DOUBLE_SIDED,
     EMISSIVE,
     FILTERS,
+    TRANSLUCENT,
     UNLIT,
     Appearance,
     MaterialTable,
 )
-from irradia.transport.punctual import PunctualLights
-from irradia.transport.textures import TextureTable, mean_colour
+from irradia.transport.textures import TextureTable
 
 HAS_TEXEL = 16  # beside the material flags: the triangle lies in the lightmap
 
@@ -55,7 +54,9 @@ class World:
         robust: Watertight intersection.
 
     Attributes:
-        filters: Whether any surface lets light through.
+        scene: As given.
+        filters: Whether any surface lets light through unbent.
+        translucent: Whether any surface lets light through diffusely.
         double_sided: Whether any surface shines back from behind.
         clamped_materials: Names of those in use that would reflect more than they may.
         fully_mapped: Whether every triangle that reflects has texels.
@@ -66,6 +67,7 @@ class World:
     ) -> None:
         if len(mesh.indices) == 0:
             raise InputError("the scene has no triangles", where=scene.name)
+        self.scene = scene
         textures = TextureTable(scene.images)
         self.materials = MaterialTable(scene.materials, textures)
         textures.freeze()
@@ -73,18 +75,20 @@ class World:
         self.clamped_materials = [scene.materials[i].name for i in used if self.materials.clamped[i]]
         self.geometry = Geometry(mesh, robust=robust)
         flags = self.materials.flags[mesh.material] | np.where(mesh.page >= 0, HAS_TEXEL, 0).astype(np.uint32)
-        self._emits = bool((flags & EMISSIVE).any())
-        self.filters = bool((flags & FILTERS).any())
-        self.double_sided = bool((flags & DOUBLE_SIDED).any())
-        self.fully_mapped = bool(((flags & (HAS_TEXEL | UNLIT)) != 0).all())
+        met = flags if mesh.casts is None else flags[mesh.casts]
+        self._emits = bool((met & EMISSIVE).any())
+        self.filters = bool((met & FILTERS).any())
+        self.translucent = bool((flags & TRANSLUCENT).any())
+        self.double_sided = bool((met & DOUBLE_SIDED).any())
+        self.fully_mapped = bool(((met & (HAS_TEXEL | UNLIT)) != 0).all())
         self.page_width, self.page_height = page_size or (1, 1)
         self._records = mi.Float(_records(mesh, flags, self.page_width, self.page_height).ravel())
-        self.lights = _lights(scene, mesh)
+        self.lights = make_lights(scene, mesh)
 
     @property
     def straight(self) -> bool:
         """Whether every ray's first hit ends it, given a lightmap to read."""
-        return self.fully_mapped and not self.filters and not self.double_sided
+        return self.fully_mapped and not (self.filters or self.double_sided or self.translucent)
 
     @property
     def plain(self) -> bool:
@@ -99,6 +103,11 @@ class World:
         pixel = mi.Point2f(a.x + b.x * bary.x + b.z * bary.y, a.y + b.y * bary.x + b.w * bary.y)
         flags = dr.reinterpret_array(mi.UInt32, c.w)
         return TriangleRecord(mi.Vector3f(c.x, c.y, c.z), flags, pixel, dr.reinterpret_array(mi.UInt32, a.z))
+
+    def page_area_px(self, triangle: mi.UInt32, active: mi.Bool) -> mi.Float:
+        """The triangle's area on its lightmap page; 0 where it has no place there."""
+        edges = dr.gather(mi.Vector4f, self._records, 3 * triangle + 1, active)
+        return 0.5 * dr.abs(edges.x * edges.w - edges.y * edges.z)
 
     def appearance(self, triangle: mi.UInt32, bary: mi.Point2f, active: mi.Bool) -> Appearance:
         """Reflectance and pass-through at a point, textures applied."""
@@ -121,18 +130,39 @@ class World:
             radiance *= self.materials.appearance(material, uv0, uv1, colour, shines).coverage
         return dr.select(shines, radiance, 0.0)
 
+    def emission_seen_from(self, point: SurfacePoint) -> Callable[..., mi.Color3f]:
+        """:meth:`emission` without the surfaces that a point doesn't see: other levels of detail."""
+        if point.lod is None:
+            return self.emission
+
+        def emission(
+            triangle: mi.UInt32, bary: mi.Point2f, from_back: mi.Bool, active: mi.Bool
+        ) -> mi.Color3f:
+            seen = self.geometry.seen(triangle, point.lod, active)
+            return self.emission(triangle, bary, from_back, seen)
+
+        return emission
+
     @dr.syntax
     def transmittance(
-        self, origin: mi.Point3f, direction: mi.Vector3f, distance: mi.Float, active: mi.Bool
+        self,
+        origin: mi.Point3f,
+        direction: mi.Vector3f,
+        distance: mi.Float,
+        active: mi.Bool,
+        lod: mi.UInt32 | None = None,
     ) -> mi.Color3f:
-        """Share of light that arrives over a distance, through any number of layers."""
+        """Share of light that arrives over a distance, through any number of layers.
+
+        ``lod`` is that of the :class:`SurfacePoint` where the ray starts.
+        """
         if dr.hint(not self.filters, mode="scalar"):
-            blocked = self.geometry.occluded(origin, direction, distance, active)
+            blocked = self.geometry.occluded(origin, direction, distance, active, lod)
             return dr.select(active & ~blocked, mi.Color3f(1.0), mi.Color3f(0.0))
         result = dr.select(active, mi.Color3f(1.0), mi.Color3f(0.0))
         o, left, active = mi.Point3f(origin), mi.Float(distance), mi.Bool(active)
         while active:
-            hit = self.geometry.intersect(o, direction, active)
+            hit = self.geometry.intersect(o, direction, active, lod)
             active &= hit.valid & (hit.t < left)
             flags = self.record(hit.triangle, hit.bary, active).flags
             thin = active & ((flags & FILTERS) != 0)
@@ -144,18 +174,36 @@ class World:
             o = dr.select(active, beyond, o)
         return result
 
-    def meets_back(self, origin: mi.Point3f, direction: mi.Vector3f, active: mi.Bool) -> mi.Bool:
+    def meets_back(
+        self, origin: mi.Point3f, direction: mi.Vector3f, active: mi.Bool, lod: mi.UInt32 | None = None
+    ) -> mi.Bool:
         """Whether the nearest surface is an opaque, single-sided one seen from behind."""
-        hit = self.geometry.intersect(origin, direction, active)
+        hit = self.geometry.intersect(origin, direction, active, lod)
         record = self.record(hit.triangle, hit.bary, hit.valid)
-        solid = (record.flags & (DOUBLE_SIDED | FILTERS)) == 0
+        solid = (record.flags & (DOUBLE_SIDED | FILTERS | TRANSLUCENT)) == 0
         return hit.valid & solid & (dr.dot(record.ng, direction) > 0.0)
 
     def point(
         self, triangle: mi.UInt32, bary: mi.Point2f, active: mi.Bool, back: mi.Bool | None = None
     ) -> SurfacePoint:
-        """See :meth:`Geometry.point`."""
-        return self.geometry.point(triangle, bary, active, back=back)
+        """See :meth:`Geometry.point`; where light comes through diffusely, its sides are known."""
+        point = self.geometry.point(triangle, bary, active, back=back)
+        if self.translucent:
+            point.sides = self._sides(triangle, bary, active, mi.Bool(False) if back is None else back)
+        return point
+
+    def _sides(self, triangle: mi.UInt32, bary: mi.Point2f, active: mi.Bool, back: mi.Bool) -> Sides:
+        """What light of either side counts, seen from the front or, on ``back`` lanes, from the back."""
+        flags = self.materials.flags_of(self.geometry.vertices(triangle, active).w, active)
+        thin = active & ((flags & TRANSLUCENT) != 0)
+        looks = self.appearance(triangle, bary, thin)
+        scale = dr.rcp(dr.maximum(looks.reflectance, 1e-6))
+        reflects = ~back | ((flags & DOUBLE_SIDED) != 0)
+        front = dr.select(thin, dr.select(reflects, looks.reflected * scale, 0.0), 1.0)
+        behind = dr.select(thin, looks.transmitted * scale, 0.0)
+        p_behind = dr.mean(behind) / dr.maximum(dr.mean(front + behind), 1e-6)
+        origin = self.geometry.point(triangle, bary, thin, back=~back).origin
+        return Sides(front, behind, origin, p_behind)
 
 
 def _records(mesh: MergedMesh, flags: NDArray[np.uint32], width: int, height: int) -> NDArray[np.float32]:
@@ -168,25 +216,4 @@ def _records(mesh: MergedMesh, flags: NDArray[np.uint32], width: int, height: in
     rows[:, 0:2], rows[:, 2] = pixels[:, 0], start.view(np.float32)
     rows[:, 4:6], rows[:, 6:8] = pixels[:, 1] - pixels[:, 0], pixels[:, 2] - pixels[:, 0]
     rows[:, 8:11], rows[:, 11] = normal, flags.view(np.float32)
-    return rows
-
-
-def _lights(scene: Scene, mesh: MergedMesh) -> Lights:
-    punctual = PunctualLights(scene.lights) if scene.lights else None
-    area = None
-    radiance = _mean_emission(scene)[mesh.material]
-    if radiance.any():
-        area = EmissiveTriangles(mesh, radiance)
-    lit = scene.environment is not None and scene.environment.radiance.max() > 0.0
-    environment = EnvironmentLight(scene.environment) if lit and scene.environment else None
-    return Lights(punctual, area, environment)
-
-
-def _mean_emission(scene: Scene) -> NDArray[np.float64]:
-    """Mean emitted radiance by material, textures averaged: what sampling by power goes by."""
-    rows = np.zeros((len(scene.materials), 3))
-    for row, material in zip(rows, scene.materials, strict=True):
-        row[:] = material.emission
-        if material.emission_texture is not None and max(material.emission) > 0.0:
-            row *= mean_colour(scene.images[material.emission_texture.image].pixels)
     return rows
