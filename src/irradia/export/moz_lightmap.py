@@ -89,7 +89,16 @@ class MozLightmaps:
                 self._materials[key] = material
             else:
                 self._materials[key] = _append(self._json, "materials", clone)
+            self._light_lower_levels(clone, page, texcoord)
         return self._materials[key]
+
+    def _light_lower_levels(self, material: Json, page: int, texcoord: int) -> None:
+        """Points a material's MSFT_lod to copies that read the page too."""
+        lod = material["extensions"].get("MSFT_lod")
+        if lod is not None:
+            known = [index for index in lod.get("ids", []) if 0 <= index < len(self._originals)]
+            lit = [self.material(index, page, texcoord) for index in known]
+            material["extensions"]["MSFT_lod"] = {**lod, "ids": lit}
 
     @property
     def used(self) -> bool:
