@@ -13,6 +13,7 @@ import numpy as np
 
 from irradia.core.colour import linear_from_srgb, luminance
 from irradia.scene.environment import mean_radiance
+from irradia.scene.light_profile import light_candela
 from irradia.scene.merge import MergedMesh
 from irradia.scene.surface import SurfaceSamples, sample_surface, triangle_areas
 from irradia.scene.types import F64, Light, Material, Rgb, Scene
@@ -74,6 +75,8 @@ def _lights(scene: Scene, samples: SurfaceSamples) -> Iterator[SourceEstimate]:
         return
     size = float(np.linalg.norm(np.ptp(samples.positions, axis=0)))
     for index, light in enumerate(scene.lights):
+        if light.mode == "off":
+            continue
         factor = (
             _directional(light, samples) if light.kind == "directional" else _punctual(light, samples, size)
         )
@@ -92,7 +95,9 @@ def _punctual(light: Light, samples: SurfaceSamples, size: float) -> float:
     distance = np.maximum(np.linalg.norm(to_light, axis=1), NEAREST_SHARE_OF_SIZE * size)
     direction = to_light / distance[:, None]
     factor = np.maximum(np.einsum("nk,nk->n", direction, samples.normals), 0.0) / distance**2
-    if light.kind == "spot":
+    if light.profile is not None:
+        factor = factor * light_candela(light, -direction)
+    elif light.kind == "spot":
         factor = factor * _cone(light, -direction @ np.asarray(light.direction))
     if light.range_m is not None:
         factor = factor * np.clip(1.0 - (distance / light.range_m) ** 4, 0.0, 1.0)

@@ -95,7 +95,7 @@ class SceneBuilder:
         return self.node(name, mesh=self.mesh(name, *parts), lightmap_scale=lightmap_scale)
 
     def light(self, light: Light) -> int:
-        """Adds a punctual light and its node; ``angle_deg`` goes to ``extras.irradia.angleDeg``."""
+        """Adds a punctual light and its node; what glTF has no word for goes to ``extras.irradia``."""
         self._extensions.add("KHR_lights_punctual")
         strength = max(light.intensity)
         written: Json = {
@@ -111,8 +111,13 @@ class SceneBuilder:
                 "innerConeAngle": _number(light.inner_cone_rad),
                 "outerConeAngle": _number(light.outer_cone_rad),
             }
-        if light.angle_deg:
-            written["extras"] = {"irradia": {"angleDeg": light.angle_deg}}
+        settings = {
+            "angleDeg": light.angle_deg or None,
+            "radius": light.radius_m or None,
+            "mode": light.mode if light.mode != "baked" else None,
+        }
+        if any(settings.values()):
+            written["extras"] = {"irradia": {k: v for k, v in settings.items() if v is not None}}
         lights = self._json.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {"lights": []})
         lights["lights"].append(written)
         node: Json = {
