@@ -13,9 +13,8 @@ glTF has no place for stands in the document's ``extras.irradia``; any .glb may 
         "environmentColor": [r, g, b]  constant radiance, as --env-color gives it
     }}
 
-``environmentColor`` (0, 0, 0) asks for black: no default light. Lights may hold
-``extras.irradia.angleDeg`` (angular diameter of a directional light), nodes
-``extras.irradia.lightmapScale`` (relative texel density; 0 takes no lightmap).
+``environmentColor`` (0, 0, 0) asks for black: no default light. What lights and nodes may hold stands
+in :mod:`irradia.scene.gltf.lights` and :mod:`irradia.scene.gltf.object_settings`.
 """
 
 from __future__ import annotations
@@ -41,6 +40,7 @@ _SCENES: dict[str, tuple[str, tuple]] = {
     "blocks": ("blocks", ()),
     "foliage": ("foliage", ()),
     "lights": ("lights", ()),
+    "lights-10": ("lights", ("lights-10", 10)),
     "objects": ("objects", ("objects", False)),
     "objects-merged": ("objects", ("objects-merged", True)),
 }
