@@ -119,6 +119,8 @@ class Primitive:
         material: Index into ``Scene.materials``.
         mesh_index, primitive_index: Where it stands in the glTF.
         vertex_source: (V,) the glTF vertex that each vertex comes from (flat normals split some).
+        tangents: (V, 4) the file's tangents and the sign of their bitangents, or None where it has
+            none or a pose has bent them.
     """
 
     positions: F32
@@ -131,6 +133,7 @@ class Primitive:
     primitive_index: int
     vertex_source: U32
     name: str = ""
+    tangents: F32 | None = None
 
 
 @dataclass(frozen=True)

@@ -55,6 +55,7 @@ def make_primitive(
         primitive_index=primitive_index,
         vertex_source=source,
         name=name,
+        tangents=vertices.tangents,
     )
     return primitive, len(indices) - len(covering)
 

@@ -23,12 +23,14 @@ class Vertices:
         normals: (V, 3), not yet unit, or None.
         texcoords: Each (V, 2).
         colors: (V, 4) linear, or None.
+        tangents: (V, 4), or None where the file has none that hold in this pose.
     """
 
     positions: F32
     normals: F32 | None
     texcoords: tuple[F32, ...]
     colors: F32 | None
+    tangents: F32 | None = None
 
     def take(self, source: U32) -> Vertices:
         """The vertices numbered ``source``, in that order."""
@@ -37,11 +39,12 @@ class Vertices:
             None if self.normals is None else self.normals[source],
             tuple(texcoord[source] for texcoord in self.texcoords),
             None if self.colors is None else self.colors[source],
+            None if self.tangents is None else self.tangents[source],
         )
 
     def moved(self, positions: F32, normals: F32 | None) -> Vertices:
-        """The same vertices elsewhere."""
-        return replace(self, positions=positions, normals=normals)
+        """The same vertices elsewhere, their tangents lost."""
+        return replace(self, positions=positions, normals=normals, tangents=None)
 
 
 def blend_vertices(stored: StoredPrimitive, weights: tuple[float, ...]) -> Vertices:
@@ -60,6 +63,7 @@ def blend_vertices(stored: StoredPrimitive, weights: tuple[float, ...]) -> Verti
         normals=normals,
         texcoords=tuple(_blend(stored, f"TEXCOORD_{i}", weights) for i in range(n_texcoords)),
         colors=None if colors is None else np.clip(colors, 0.0, 1.0),
+        tangents=None if normals is None or any(weights) else _tangents(stored),
     )
 
 
@@ -84,6 +88,14 @@ def _blend(stored: StoredPrimitive, name: str, weights: tuple[float, ...]) -> F3
         if weight and name in target:
             values += np.float32(weight) * target[name].floats(values.shape[1])
     return values
+
+
+def _tangents(stored: StoredPrimitive) -> F32 | None:
+    """The file's tangents where they are usable; they can always be derived, so bad ones are no error."""
+    tangents = stored.attributes.get("TANGENT")
+    if tangents is None or tangents.values.shape[1] != 4 or not np.isfinite(tangents.values).all():
+        return None
+    return tangents.floats(4)
 
 
 def _numbered(stored: StoredPrimitive, name: str) -> Iterator[str]:
