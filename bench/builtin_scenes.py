@@ -1,0 +1,84 @@
+"""How long does each built-in scene take to one noise?
+
+    python bench/builtin_scenes.py [--scene NAME ...] [--noise 0.05] [--repeats 3] [--threads N]
+
+Each bake is the command line in a fresh process at its default resolution, without a report. One bake
+before the clock starts fills the cache of unwraps and of compiled kernels, as on a user's second bake.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from irradia.core.device import available_threads
+from irradia.core.files import write_text_atomic
+from irradia.scene.builtin import NAMES
+from support.bake_command import Run, facts, run_bake
+
+RESULT = Path(__file__).parent / "results" / "builtin_scenes.md"
+
+
+def main() -> None:
+    """Bakes, prints and writes the table."""
+    arguments = _parse()
+    options = ["--noise", str(arguments.noise), "--no-report", "--threads", str(arguments.threads)]
+    rows = []
+    for name in arguments.scene:
+        run_bake(f"builtin:{name}", *options)
+        runs = [run_bake(f"builtin:{name}", *options) for _ in range(arguments.repeats)]
+        rows.append(_row(name, runs))
+        print(rows[-1], file=sys.stderr)
+    text = "\n".join([*_head(arguments.noise, arguments.repeats), *rows, "", *_facts(arguments), ""])
+    write_text_atomic(RESULT, text)
+    print(text)
+
+
+def _head(noise: float, repeats: int) -> list[str]:
+    return [
+        f"# Bake times of the built-in scenes at {noise:.0%} noise",
+        "",
+        "Noise: 95th percentile over texels of standard error over (mean + 1 % of the map's median).",
+        f"Medians of {repeats}, fastest and slowest beside them. Bake: from opening the scene to finished",
+        "pages; tracing is part of it. Whole: the process, files written.",
+        "",
+        "| scene | texels | samples a texel | bake, s | of it tracing, s | whole, s |",
+        "|---|---:|---:|---:|---:|---:|",
+    ]
+
+
+def _row(name: str, runs: Sequence[Run]) -> str:
+    middle = sorted(runs, key=lambda run: run.result["bake_s"])[len(runs) // 2].result
+    stats = middle["stats"]
+    return (
+        f"| {name} | {middle['lightmap']['n_texels']:,} | {stats['samples_per_texel']:.0f} "
+        f"| {_spread([run.result['bake_s'] for run in runs])} "
+        f"| {_spread([run.result['stats']['tracing_seconds'] for run in runs])} "
+        f"| {_spread([run.wall_s for run in runs])} |"
+    )
+
+
+def _spread(seconds: Sequence[float]) -> str:
+    return f"{statistics.median(seconds):.2f} ({min(seconds):.2f} – {max(seconds):.2f})"
+
+
+def _facts(arguments: argparse.Namespace) -> list[str]:
+    return facts("bench/builtin_scenes.py", arguments.threads)
+
+
+def _parse() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--scene", nargs="+", default=NAMES, choices=NAMES, metavar="NAME")
+    parser.add_argument("--noise", type=float, default=0.05)
+    parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--threads", type=int, default=available_threads())
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    main()
