@@ -68,7 +68,7 @@ def inner_texels(materials: tuple[Material, ...], mesh: MergedMesh, texels: Texe
     division by the albedo has no answer.
     """
     compared = np.array([_is_opaque_and_lit(material) for material in materials])
-    return (texels.coverage >= 1.0) & compared[mesh.material[texels.triangle[:, 0]]]
+    return (texels.coverage >= 1.0) & compared[mesh.material[texels.triangle]]
 
 
 def _is_opaque_and_lit(material: Material) -> bool:
@@ -78,7 +78,6 @@ def _is_opaque_and_lit(material: Material) -> bool:
 
 def texel_positions(mesh: MergedMesh, texels: TexelSet) -> np.ndarray:
     """(N, 3) mean position of each texel's sub-samples."""
-    corners = mesh.positions[mesh.indices[texels.triangle]].astype(np.float64)
-    v, w = texels.barycentric[..., 0], texels.barycentric[..., 1]
-    weights = np.stack([1.0 - v - w, v, w], axis=-1)
+    triangle, weights = texels.locate(mesh)
+    corners = mesh.positions[mesh.indices[triangle]].astype(np.float64)
     return np.einsum("nsk,nskc->nsc", weights, corners).mean(axis=1)

@@ -37,14 +37,14 @@ def bake(scene: Scene, resolution: int, samples: int, **options: object) -> Ligh
 def places(scene: Scene, layout: LightmapLayout) -> tuple[MergedMesh, TexelSet, NDArray[np.float64]]:
     """The merged mesh, its texels, and world positions (N, SUBSAMPLES, 3) of their sub-samples."""
     mesh, texels = cover(scene, layout)
-    corners = mesh.positions[mesh.indices[texels.triangle]].astype(np.float64)
-    b, c = texels.barycentric[..., 0:1], texels.barycentric[..., 1:2]
-    return mesh, texels, corners[:, :, 0] * (1 - b - c) + corners[:, :, 1] * b + corners[:, :, 2] * c
+    triangle, weights = texels.locate(mesh)
+    corners = mesh.positions[mesh.indices[triangle]].astype(np.float64)
+    return mesh, texels, np.einsum("nsk,nskc->nsc", weights, corners)
 
 
 def instance_of(mesh: MergedMesh, texels: TexelSet) -> NDArray[np.uint32]:
     """(N,) the instance that each texel belongs to."""
-    return mesh.instance[texels.triangle[:, 0]]
+    return mesh.instance[texels.triangle]
 
 
 def without_light(scene: Scene) -> Scene:

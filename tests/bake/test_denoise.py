@@ -11,6 +11,7 @@ from irradia.bake.denoise import denoise
 from irradia.bake.texels import SUBSAMPLES, TexelSet
 from irradia.core.errors import MissingDependencyError
 from irradia.core.progress import silent_progress
+from irradia.transport.subsample_set import SubsampleSet
 
 SIZE = 96
 
@@ -27,8 +28,11 @@ def texels_of(charts: list[tuple[int, int, int, int]]) -> TexelSet:
         height_px=SIZE,
         width_px=SIZE,
         pixel=pixel.astype(np.uint32),
-        triangle=np.zeros((n, SUBSAMPLES), np.uint32),
-        barycentric=np.zeros((n, SUBSAMPLES, 2), np.float32),
+        samples=SubsampleSet(
+            code=np.zeros((SUBSAMPLES // 2, n), np.uint32),
+            first=np.zeros(n, np.uint32),
+            triangle=np.zeros(1, np.uint32),
+        ),
         coverage=np.ones(n, np.float32),
         chart=page.ravel()[pixel].astype(np.uint32),
     )

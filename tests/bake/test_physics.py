@@ -125,10 +125,9 @@ def test_smooth_cylinder_shades_like_a_round_one():
     layout = laid_out(scene, 256)
     mesh, texels, _ = places(scene, layout)
     sun = scene.lights[0]
-    corners = mesh.indices[texels.triangle]
-    b, c = texels.barycentric[..., 0:1], texels.barycentric[..., 1:2]
-    normals = mesh.normals[corners].astype(np.float64)
-    smooth = normals[:, :, 0] * (1 - b - c) + normals[:, :, 1] * b + normals[:, :, 2] * c
+    triangle, weights = texels.locate(mesh)
+    corners = mesh.indices[triangle]
+    smooth = np.einsum("nsk,nskc->nsc", weights, mesh.normals[corners].astype(np.float64))
     smooth /= np.linalg.norm(smooth, axis=-1, keepdims=True)
     edges = mesh.positions[corners].astype(np.float64)
     facet = np.cross(edges[:, :, 1] - edges[:, :, 0], edges[:, :, 2] - edges[:, :, 0])

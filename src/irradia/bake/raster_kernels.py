@@ -2,7 +2,7 @@
 
 Vertices are snapped to 2⁻¹⁴ of a texel and every edge test is exact in 64-bit integers, so two
 triangles that share an edge neither both claim nor both miss a sub-sample on it. Triangles come wound
-so that their area is not negative; ``swapped`` says which were turned round for that.
+so that their area is not negative.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit, prange
 
-from irradia.bake.texels import SUBSAMPLES
+from irradia.transport.subsample_set import CODE_BITS, STEPS, SUBSAMPLES, TRIANGLE_SHIFT, Y_SHIFT
 
 ONE = 1 << 14  # fixed-point steps per texel; pages of up to 2^16 texels keep edge products below 2^62
 _RUN = 1024  # texels that share their scratch space
@@ -109,7 +109,7 @@ def touched_texels(fixed, page, width, height, offsets, pixels):
         width: Of a page, in texels.
         height: The same.
         offsets: (T,) where each triangle's texels begin in ``pixels``.
-        pixels: (F,) int64, filled; empty to count only.
+        pixels: (F,) uint32, filled; empty to count only.
 
     Returns:
         (T,) how many texels each triangle touches.
@@ -128,7 +128,7 @@ def group_by_texel(pixels, triangle_of, n_pixels):
     Returns:
         (covered pixels, offsets of their fragments (N + 1,), triangle of each fragment in that order).
     """
-    slot = np.zeros(n_pixels + 1, np.int64)
+    slot = np.zeros(n_pixels + 1, np.uint32)
     for p in pixels:
         slot[p + 1] += 1
     n_covered = 0
@@ -230,36 +230,6 @@ def _nearest_to_origin(polygon, n):
 
 
 @njit(cache=True)
-def _weights(tri, px, py):
-    """Barycentric weights of the second and third corner at a point (fixed-point, may be fractional)."""
-    area = float(_area(tri))
-    if area > 0:
-        second = _edge(float(tri[2, 0]), float(tri[2, 1]), float(tri[0, 0]), float(tri[0, 1]), px, py) / area
-        third = _edge(float(tri[0, 0]), float(tri[0, 1]), float(tri[1, 0]), float(tri[1, 1]), px, py) / area
-        second = min(max(second, 0.0), 1.0)
-        return second, min(max(third, 0.0), 1.0 - second)
-    return _weights_on_line(tri, px, py)
-
-
-@njit(cache=True)
-def _weights_on_line(tri, px, py):
-    """The same for a triangle without area: the position along its longest edge."""
-    best, i = 0.0, 0
-    for e in range(3):
-        dx, dy = tri[(e + 1) % 3, 0] - tri[e, 0], tri[(e + 1) % 3, 1] - tri[e, 1]
-        if float(dx * dx + dy * dy) > best:
-            best, i = float(dx * dx + dy * dy), e
-    if best == 0.0:
-        return 1.0 / 3.0, 1.0 / 3.0
-    j = (i + 1) % 3
-    along = (px - tri[i, 0]) * (tri[j, 0] - tri[i, 0]) + (py - tri[i, 1]) * (tri[j, 1] - tri[i, 1])
-    t = min(max(along / best, 0.0), 1.0)
-    second = (1.0 - t if i == 1 else 0.0) + (t if j == 1 else 0.0)
-    third = (1.0 - t if i == 2 else 0.0) + (t if j == 2 else 0.0)
-    return second, third
-
-
-@njit(cache=True)
 def _chart_share(fixed, chart, fragments, wanted, x, y, polygon, scratch):
     """How many sub-samples a chart has in a texel, and how much of its area."""
     hits = 0
@@ -299,18 +269,18 @@ def _owner(fixed, chart, fragments, x, y, polygon, scratch):
 
 
 @njit(cache=True)
-def _store(fixed, swapped, t, px, py, triangle, barycentric, slot):
-    """Records one sub-sample in the triangle's own order of corners."""
-    second, third = _weights(fixed[t], px, py)
-    triangle[slot] = t
-    barycentric[slot, 0] = third if swapped[t] else second
-    barycentric[slot, 1] = second if swapped[t] else third
+def _code(px, py, which):
+    """A sub-sample as it is kept (see :class:`SubsampleSet`), of its place in the texel in steps of 1/ONE."""
+    x = min(max(px * STEPS // ONE, 0), STEPS - 1)
+    y = min(max(py * STEPS // ONE, 0), STEPS - 1)
+    return np.uint32(x | (y << Y_SHIFT) | (which << TRIANGLE_SHIFT))
 
 
 @njit(cache=True)
-def _sample_sliver(fixed, swapped, chart, fragments, owner, x, y, polygon, scratch, triangle, barycentric):
-    """One sample at the point nearest to the texel's centre, for a texel that no sub-sample hits."""
+def _sliver_sample(fixed, chart, fragments, owner, x, y, polygon, scratch):
+    """Triangle and code of the chart's point nearest to the texel's centre, where no sub-sample hits it."""
     best = np.inf
+    triangle, code = fragments[0], np.uint32(0)
     for t in fragments:
         if chart[t] != owner:
             continue
@@ -318,70 +288,105 @@ def _sample_sliver(fixed, swapped, chart, fragments, owner, x, y, polygon, scrat
         px, py = _nearest_to_origin(polygon, n)
         if px * px + py * py < best:
             best = px * px + py * py
-            _store(fixed, swapped, t, x + (px + 0.5) * ONE, y + (py + 0.5) * ONE, triangle, barycentric, 0)
+            triangle, code = t, _code(np.int64((px + 0.5) * ONE), np.int64((py + 0.5) * ONE), 0)
+    return triangle, code
 
 
 @njit(cache=True)
-def _resolve_texel(fixed, swapped, chart, here, x, y, polygon, scratch, triangle, barycentric):
-    """Fills one texel's sub-samples; returns the chart that owns it and the share that it covers."""
+def _resolve_texel(fixed, chart, here, x, y, polygon, scratch, codes, used):
+    """Fills one texel's codes and the triangles that they use.
+
+    Returns:
+        The chart that owns the texel, the share that it covers, and the number of triangles used.
+    """
     # -- Who owns the texel
     owner, area = _owner(fixed, chart, here, x, y, polygon, scratch)
 
     # -- What each sub-sample sees: the lowest triangle of that chart
-    n_hits = 0
+    n_hits, n_used = 0, 0
     for s in range(SUBSAMPLES):
-        px, py = x + SUBSAMPLE_X[s], y + SUBSAMPLE_Y[s]
         for t in here:
-            if chart[t] == owner and _contains(fixed[t], px, py):
-                _store(fixed, swapped, t, float(px), float(py), triangle, barycentric, n_hits)
+            if chart[t] == owner and _contains(fixed[t], x + SUBSAMPLE_X[s], y + SUBSAMPLE_Y[s]):
+                which = 0
+                while which < n_used and used[which] != t:
+                    which += 1
+                used[which] = t
+                n_used = max(n_used, which + 1)
+                codes[n_hits] = _code(SUBSAMPLE_X[s], SUBSAMPLE_Y[s], which)
                 n_hits += 1
                 break
     if n_hits == 0:
-        _sample_sliver(fixed, swapped, chart, here, owner, x, y, polygon, scratch, triangle, barycentric)
-        n_hits = 1
+        used[0], codes[0] = _sliver_sample(fixed, chart, here, owner, x, y, polygon, scratch)
+        n_hits, n_used = 1, 1
 
     # -- A texel covered in part repeats what it has
     for s in range(n_hits, SUBSAMPLES):
-        triangle[s] = triangle[s - n_hits]
-        barycentric[s, 0] = barycentric[s - n_hits, 0]
-        barycentric[s, 1] = barycentric[s - n_hits, 1]
-    return owner, area
+        codes[s] = codes[s - n_hits]
+    return owner, area, n_used
 
 
 @njit(cache=True, parallel=True)
-def resolve(fixed, swapped, chart, pixels, offsets, fragments, width, height):
+def resolve(fixed, chart, pixels, offsets, fragments, width, height):
     """Decides for each covered texel which chart owns it and what its sub-samples see.
 
     Args:
         fixed: (T, 3, 2) int64 vertices in steps of 1/ONE texel.
-        swapped: (T,) whether the second and third vertex change places in ``fixed``.
         chart: (T,).
         pixels: (N,) the covered texels.
         offsets: (N + 1,) where each texel's triangles begin in ``fragments``.
-        fragments: Triangles by texel, ascending within each; see :func:`group_by_texel`.
+        fragments: Triangles by texel, ascending within each; see :func:`group_by_texel`. Each
+            texel's are overwritten from the front by those that its sub-samples see.
         width: Of a page, in texels.
         height: The same.
 
     Returns:
-        triangle (N, SUBSAMPLES) uint32, barycentric (N, SUBSAMPLES, 2) float32, coverage (N,)
-        float32, chart (N,) uint32.
+        Codes (SUBSAMPLES / 2, N) uint32 of :class:`SubsampleSet`, how many triangles each texel
+        uses (N,) uint8, coverage (N,) float32, chart (N,) uint32.
     """
     n = len(pixels)
-    triangle = np.empty((n, SUBSAMPLES), np.uint32)
-    barycentric = np.empty((n, SUBSAMPLES, 2), np.float32)
+    words = np.empty((SUBSAMPLES // 2, n), np.uint32)
+    n_used = np.empty(n, np.uint8)
     coverage = np.empty(n, np.float32)
     chart_of = np.empty(n, np.uint32)
     for run in prange((n + _RUN - 1) // _RUN):
         polygon = np.empty((_CLIP_CORNERS, 2))
         scratch = np.empty((_CLIP_CORNERS, 2))
+        codes = np.empty(SUBSAMPLES, np.uint32)
+        used = np.empty(SUBSAMPLES, np.uint32)
         for k in range(run * _RUN, min((run + 1) * _RUN, n)):
             in_page = np.int64(pixels[k]) % (width * height)
             x = (in_page % width) * ONE
             y = (in_page // width) * ONE
             here = fragments[offsets[k] : offsets[k + 1]]
-            owner, area = _resolve_texel(
-                fixed, swapped, chart, here, x, y, polygon, scratch, triangle[k], barycentric[k]
-            )
+            owner, area, count = _resolve_texel(fixed, chart, here, x, y, polygon, scratch, codes, used)
+            here[:count] = used[:count]
+            n_used[k] = count
+            for s in range(0, SUBSAMPLES, 2):
+                words[s // 2, k] = codes[s] | (codes[s + 1] << CODE_BITS)
             chart_of[k] = owner
             coverage[k] = min(max(area, _MIN_COVERAGE), 1.0)
-    return triangle, barycentric, coverage, chart_of
+    return words, n_used, coverage, chart_of
+
+
+@njit(cache=True)
+def gather_used(offsets, n_used, fragments):
+    """Closes the gaps between the triangles that texels use.
+
+    Args:
+        offsets: (N + 1,) where each texel's triangles begin in ``fragments``.
+        n_used: (N,) how many of them count.
+        fragments: As :func:`resolve` leaves them.
+
+    Returns:
+        Where each texel's triangles begin (N,) uint32 in the list of them all (M,) uint32.
+    """
+    first = np.empty(len(n_used), np.uint32)
+    total = 0
+    for k in range(len(n_used)):
+        first[k] = total
+        total += n_used[k]
+    triangle = np.empty(total, np.uint32)
+    for k in range(len(n_used)):
+        for i in range(n_used[k]):
+            triangle[first[k] + i] = fragments[offsets[k] + i]
+    return first, triangle
