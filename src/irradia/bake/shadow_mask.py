@@ -180,12 +180,11 @@ def shadow_mask_pages(mask: ShadowMask, texels: TexelSet, valid: NDArray[np.bool
     Returns:
         (pages, height, width, 4).
     """
-    pages = np.ones((texels.n_pages, texels.height_px, texels.width_px, N_CHANNELS), np.float32)
+    values = mask.visibility.copy()
     for channel in np.flatnonzero(mask.lit.any(axis=0)):
-        grey = np.repeat(mask.visibility[:, channel, None], 3, axis=1)  # what dilation takes
         known = mask.lit[:, channel] & valid
-        pages[..., channel] = dilate(fill_invalid(grey, known, texels), texels)[..., 0]
-    return pages
+        values[:, channel] = fill_invalid(mask.visibility[:, channel, None], known, texels)[:, 0]
+    return dilate(values, texels)
 
 
 def _overlap(reached: NDArray[np.bool_]) -> NDArray[np.bool_]:
