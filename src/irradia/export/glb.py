@@ -11,10 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irradia
+from irradia.bake.directional import DirectionalMaps
 from irradia.core.errors import InternalError
 from irradia.core.files import write_atomic
 from irradia.export import lighting_extension
 from irradia.export.bindings import bind_nodes
+from irradia.export.directional_extension import add_directional
 from irradia.export.earlier_bake import remove_earlier_bake
 from irradia.export.instances import GPU_INSTANCING, write_out_gpu_instances
 from irradia.export.lighting_extension import InstanceTables, bind_node
@@ -41,6 +43,7 @@ def write_baked_glb(
     *,
     compatible: bool = False,
     encoding: Encoding = "rgb9e5",
+    directional: DirectionalMaps | None = None,
 ) -> None:
     """Writes the scene's document with its lightmap, whole or not at all.
 
@@ -57,8 +60,16 @@ def write_baked_glb(
             of MOZ_lightmap light them too. Otherwise such meshes stay shared, and only readers of
             IRRADIA_lighting light them.
         encoding: Of the HDR map.
+        directional: Maps that say where the light comes from.
     """
-    data = baked_glb(scene, layout, pages_irradiance_over_pi, compatible=compatible, encoding=encoding)
+    data = baked_glb(
+        scene,
+        layout,
+        pages_irradiance_over_pi,
+        compatible=compatible,
+        encoding=encoding,
+        directional=directional,
+    )
     with write_atomic(path) as stream:
         stream.write(data)
 
@@ -70,12 +81,13 @@ def baked_glb(
     *,
     compatible: bool = False,
     encoding: Encoding = "rgb9e5",
+    directional: DirectionalMaps | None = None,
 ) -> bytes:
     """The bytes of :func:`write_baked_glb`."""
     if scene.document is None:
         raise InternalError("the scene to export has no document")
     export = _Export(scene, scene.document, layout, pages, compatible)
-    binary = export.run(encoding)
+    binary = export.run(encoding, directional)
     return _container(export.json, binary)
 
 
@@ -112,7 +124,7 @@ class _Export:
             free_textures=remove_earlier_bake(self.json),
         )
 
-    def run(self, encoding: Encoding) -> bytes:
+    def run(self, encoding: Encoding, directional: DirectionalMaps | None) -> bytes:
         """Changes the JSON and returns the binary chunk."""
         self._bind_nodes()
         writer = PrimitiveWriter(self._document, self._accessors, self._slots)
@@ -121,6 +133,8 @@ class _Export:
         if self._bound:
             lighting_extension.move_baked_lights(self.json)
             lighting_extension.add_lightmap(self.json, self._slots, self._pages, encoding)
+            if directional is not None:
+                add_directional(self.json, self._slots, directional, encoding)
             used.add(lighting_extension.NAME)
         self._embed_images()
         self._list_extensions(used)

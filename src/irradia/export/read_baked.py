@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from irradia.bake.directional import DirectionalMaps
 from irradia.core.errors import InputError
+from irradia.export.directional_extension import read_directional
 from irradia.export.lighting_extension import NAME, NO_PAGE, VERSION
 from irradia.formats.ktx2 import decode_ktx2
 from irradia.scene.gltf.accessors import Accessors
@@ -24,11 +26,13 @@ class BakedScene:
 
     Attributes:
         pages: (P, H, W, 3) linear E/π.
+        directional: Maps that say where the light comes from, or None.
     """
 
     scene: Scene
     layout: LightmapLayout
     pages: NDArray[np.float32]
+    directional: DirectionalMaps | None = None
 
 
 def read_baked(spec: str, options: LoadOptions | None = None) -> BakedScene:
@@ -56,7 +60,7 @@ def read_baked(spec: str, options: LoadOptions | None = None) -> BakedScene:
         offset=np.array([r.offset for r in rectangles], np.float32).reshape(-1, 2),
         texels_per_metre=0.0,
     )
-    return BakedScene(scene, layout, pages)
+    return BakedScene(scene, layout, pages, read_directional(document, accessors))
 
 
 @dataclass(frozen=True)
