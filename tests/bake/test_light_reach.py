@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from irradia.bake import light_reach
 from irradia.bake.light_reach import cut_patches, reaches, strength
 from irradia.bake.shadow_mask import plan_shadow_mask
 from irradia.scene.merge import merge
@@ -61,9 +62,11 @@ def _random_points(mesh, n: int, rng) -> tuple[np.ndarray, np.ndarray]:
     return a + (b - a) * u[:, None] + (c - a) * (v - u)[:, None], normals
 
 
+@pytest.mark.parametrize("n_patches", [1 << 13, 48])
 @pytest.mark.parametrize("name", ["cornell", "cylinder"])
 @pytest.mark.parametrize("kind", ["point", "spot", "directional"])
-def test_lights_that_meet_anywhere_overlap(name, kind):
+def test_lights_that_meet_anywhere_overlap(name, kind, n_patches, monkeypatch):
+    monkeypatch.setattr(light_reach, "_N_PATCHES", n_patches)
     scene = lit(name)
     mesh = merge(scene, laid_out(scene, 64))
     rng = np.random.default_rng(3)
@@ -104,6 +107,14 @@ def test_a_light_below_a_floor_does_not_reach_its_top():
     assert reaches(replace(lamp, radius_m=0.02), patches).all()
     assert not reaches(Light("directional", (1, 1, 1), direction=(0, 1, 0)), patches).any()
     assert not reaches(Light("directional", (1, 1, 1), direction=(1, 0, 0)), patches).any()
+
+
+def test_a_lamp_between_two_steps_reaches_the_lower_one(monkeypatch):
+    monkeypatch.setattr(light_reach, "_N_PATCHES", 1)
+    patches = cut_patches(_mesh(_FLOOR, quad((-5, 1, -5), (0, 0, 10), (2, 0, 0))))
+    assert len(patches.low) == 1
+    assert reaches(Light("point", (1, 1, 1), position=(0.0, 0.1, 0.0)), patches).all()
+    assert not reaches(Light("point", (1, 1, 1), position=(0.0, -0.1, 0.0)), patches).any()
 
 
 def test_range_and_cone_are_resolved_to_a_small_part_of_the_floor():

@@ -68,14 +68,14 @@ def test_the_sun_keeps_its_channel_among_many_lamps():
 
 
 def test_a_light_met_late_takes_the_channel_of_the_weakest():
-    """Four weak lights, each beside three of four strong ones, have their channels before the middling
-    light that overlaps them all gets its turn.
+    """Three weak lights, each beside three of four strong ones, have their channels before two that
+    overlap them get their turn. The first of these takes the fourth channel, the second finds none.
     """
     strong = [(a, b) for a in range(4) for b in range(a)]
-    weak = [(4 + w, s) for w in range(4) for s in range(4) if s != w]
-    middling = [(8, 4 + w) for w in range(4)]
-    strength = np.array([100.0, 99.0, 98.0, 97.0, 3.0, 1.0, 2.0, 4.0, 50.0])
-    channel = assign_channels(_graph(9, strong + weak + middling), strength)
+    weak = [(4 + w, s) for w in range(3) for s in range(4) if s != w]
+    late = [(a, b) for a in (7, 8) for b in range(4, a)]
+    strength = np.array([100.0, 99.0, 98.0, 97.0, 3.0, 1.0, 2.0, 60.0, 50.0])
+    channel = assign_channels(_graph(9, strong + weak + late), strength)
     assert np.flatnonzero(channel == NO_CHANNEL).tolist() == [5]
     assert channel[8] == channel[1]
 
