@@ -311,7 +311,7 @@ def direct(
         arrival = direct(world, side.point, sampler, nee_ratio, active)
         direction = mirrored_to_front(arrival.direction, point.ns)
         return Arrival(arrival.light * side.weight, direction, arrival.live)
-    u, pick = sampler.next_2d(), sampler.next_1d()
+    u, pick = sampler.next_2d(), sampler.next_2d().x
     sample = lights.sample(world.geometry, world.emission_seen_from(point), point, pick, u, active)
     cosine = dr.dot(point.ns, sample.direction)
     above = active & (cosine > 0.0) & (dr.dot(point.ng, sample.direction) > 0.0)
