@@ -9,7 +9,7 @@ import pytest
 
 from irradia.scene.environment import environment_from_color
 from irradia.scene.merge import LEVEL_BITS, merge
-from irradia.scene.types import Light, Material
+from irradia.scene.types import Material
 
 from .flat_scenes import (
     BLACK,
@@ -133,16 +133,14 @@ def test_lamp_of_a_coarse_level_lights_its_own_level_alone():
 
 @pytest.mark.parametrize("fine_blocks", [True, False])
 def test_bounces_from_others_see_the_finest_level_again(fine_blocks):
-    """The sun shines up past the coarse level at a ceiling; for the ceiling, the fine one is in the way."""
-    sun = Light("directional", (1.0, 1.0, 1.0), direction=(0.0, 1.0, 0.0))
-    fine = level(0, 0) if fine_blocks else level(0, 2)
+    """A lamp shines up past the coarse level at a ceiling; for the ceiling, the fine one is in the way."""
     sheets = [
         Sheet(matte(0.9), y=10.0, width=40.0, depth=40.0, up=False),
-        Sheet(GREY, y=5.0, width=50.0, depth=50.0, instance=fine),
+        Sheet(BLACK, y=5.0, width=50.0, depth=50.0, instance=level(0, 0 if fine_blocks else 2)),
         Sheet(GREY, y=0.0, instance=level(0, 1)),
+        Sheet(LAMP, y=-5.0, width=10.0, depth=10.0),
     ]
-    world = world_of(stacked(sheets, lights=(sun,)))
-    assert irradiance_over_pi(world, 4).any() != fine_blocks
+    assert irradiance_over_pi(world_of(stacked(sheets)), 4).any() != fine_blocks
 
 
 def test_receive_only_objects_are_passed_by_rays():
