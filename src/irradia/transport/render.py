@@ -92,7 +92,7 @@ def render(
     return renderer.image()
 
 
-class _DisplayCache:
+class DisplayCache:
     """A finished lightmap, filtered bilinearly, times the reflectance at the hit."""
 
     def __init__(self, pages: NDArray[np.float32]) -> None:
@@ -100,6 +100,8 @@ class _DisplayCache:
         texels = np.zeros((n_pages, self._height, self._width, 4), np.float32)
         texels[..., :3] = pages
         self._texels = mi.Float(texels.ravel())
+
+    everywhere = False
 
     def outgoing(self, world: World, hit: Hit, record: TriangleRecord, active: mi.Bool) -> mi.Color3f:
         """See :class:`LightCache`."""
@@ -127,7 +129,7 @@ class _Renderer:
         layout = lightmap.layout if lightmap else None
         size = (layout.width_px, layout.height_px) if layout else None
         self._world = World(scene, merge(scene, layout), size, robust=not options.fast_rays)
-        self._cache = _DisplayCache(lightmap.pages) if lightmap else None
+        self._cache = DisplayCache(lightmap.pages) if lightmap else None
         self._camera = camera
         self._width, self._height = options.width, options.height
         self._seed = Seed(options.seed).child("render").uint32()
