@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from irradia.core.errors import InputError
-from irradia.formats.hdr import decode_hdr, linear_from_rgbe, read_hdr, rgbe_from_linear, write_hdr
+from irradia.formats.hdr import (
+    decode_hdr,
+    linear_from_rgbe,
+    read_hdr,
+    read_hdr_image,
+    rgbe_from_linear,
+    write_hdr,
+)
 
 HEAD = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n"
 GREY = bytes([128, 128, 128, 129])  # 128 · 2^(129−136) = 1
@@ -130,3 +138,68 @@ def test_bad_headers_are_input_errors(data: bytes) -> None:
 def test_missing_file_is_an_input_error(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="can't read"):
         read_hdr(tmp_path / "none.hdr")
+
+
+def pattern(width: int, height: int = 70) -> np.ndarray:
+    """Noise, long flat runs, short runs, black, and rows that repeat; over a band's edge."""
+    rng = np.random.default_rng(width)
+    rgb = np.exp(rng.normal(0, 3, (height, width, 3))).astype(np.float32)
+    rgb[10:30] = rng.integers(1, 5, (20, -(-width // 5), 3)).repeat(5, axis=1)[:, :width]
+    rgb[30:40] = 0.25
+    rgb[40:45, width // 3 :] = 0.0
+    return rgb
+
+
+@pytest.mark.parametrize("width", [1, 7, 8, 9, 127, 128, 129, 130, 131, 255, 256, 300])
+def test_written_runs_come_back_at_every_width(tmp_path: Path, width: int) -> None:
+    rgb = pattern(width)
+    write_hdr(tmp_path / "a.hdr", rgb, {"irradia:scale": "0.5"})
+    image = read_hdr_image(tmp_path / "a.hdr")
+    np.testing.assert_array_equal(image.rgb, linear_from_rgbe(rgbe_from_linear(rgb)))
+    assert image.metadata == {"FORMAT": "32-bit_rle_rgbe", "irradia:scale": "0.5"}
+
+
+def test_golden_written_runs(tmp_path: Path) -> None:
+    """Reds 1 2 3 then a run; a run of exponents longer than 127 is split."""
+    rgb = np.ones((1, 130, 3), np.float32)
+    rgb[0, :3, 0] = (0.5, 0.25, 0.75)
+    write_hdr(tmp_path / "a.hdr", rgb)
+    body = (tmp_path / "a.hdr").read_bytes().partition(b"+X 130\n")[2]
+    red = bytes([3, 64, 32, 96, 255, 128])
+    full = bytes([255, 128, 131, 128])
+    assert body == bytes([2, 2, 0, 130]) + red + full + full + bytes([255, 129, 131, 129])
+
+
+def test_runs_make_flat_pictures_small(tmp_path: Path) -> None:
+    write_hdr(tmp_path / "a.hdr", np.full((256, 256, 3), 0.5, np.float32))
+    assert (tmp_path / "a.hdr").stat().st_size < 256 * 256 * 4 // 30
+
+
+def test_three_js_reads_what_is_written(web_check, tmp_path: Path) -> None:
+    """three.js divides mantissas by 255 and not by 256."""
+    rgb = np.clip(pattern(131), 0.0, 100.0)
+    write_hdr(tmp_path / "a.hdr", rgb, {"irradia:unit": "1.0"})
+    size = web_check("read-image", tmp_path / "a.hdr", tmp_path / "pixels.bin")
+    found = np.frombuffer((tmp_path / "pixels.bin").read_bytes(), "<f4")
+    found = found.reshape(size["height"], size["width"], 4)[..., :3] * (255.0 / 256.0)
+    np.testing.assert_allclose(found, read_hdr(tmp_path / "a.hdr"), rtol=1e-6, atol=1e-30)
+
+
+def test_every_truncation_is_an_input_error(tmp_path: Path) -> None:
+    write_hdr(tmp_path / "a.hdr", pattern(20, 50)[:3])
+    data = (tmp_path / "a.hdr").read_bytes()
+    for keep in range(len(data)):
+        with pytest.raises(InputError):
+            decode_hdr(data[:keep])
+
+
+def test_flipped_bytes_never_give_another_error(tmp_path: Path) -> None:
+    write_hdr(tmp_path / "a.hdr", pattern(20, 50)[:12])
+    data = (tmp_path / "a.hdr").read_bytes()
+    rng = np.random.default_rng(43)
+    for _ in range(2000):
+        bad = bytearray(data)
+        for at in rng.integers(len(bad), size=2):
+            bad[at] = rng.integers(256)
+        with contextlib.suppress(InputError):
+            assert decode_hdr(bytes(bad)).ndim == 3

@@ -1,14 +1,16 @@
 """Radiance .hdr pictures: RGBE, flat or run-length encoded in the old or the new way.
 
 Ward, "Real Pixels", Graphics Gems II, 1991, and the file format notes of Radiance. A mantissa m with
-exponent e stands for m · 2^(e−136), as stb_image, OpenImageIO and three.js read it; Radiance's own
-tools add half a step to m, which brightens black channels.
+exponent e stands for m · 2^(e−136), as stb_image and OpenImageIO read it. three.js divides by 255 where
+that divides by 256, and so shows pictures 0.4 % brighter; Radiance's own tools add half a step to m, which
+brightens black channels.
 """
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -16,12 +18,13 @@ from numpy.typing import NDArray
 
 from irradia.core.errors import InputError
 from irradia.core.files import write_atomic
+from irradia.formats import hdr_runs
 from irradia.formats.limits import check_image_size
 
 U8 = NDArray[np.uint8]
 _MAGIC = (b"#?RADIANCE", b"#?RGBE")
 _SIZE = re.compile(rb"([+-])([XY]) (\d{1,9}) ([+-])([XY]) (\d{1,9})$")
-_RLE_WIDTHS = range(8, 32768)  # widths for which the new encoding exists
+_BAND_ROWS = 64
 _REPAIR = "The file is incomplete or damaged: copy or download it again."
 
 
@@ -36,6 +39,20 @@ class _Header:
     flip_pixels: bool
     pixels_at: int
     exposure: float
+    variables: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class HdrImage:
+    """A picture with what its header says.
+
+    Attributes:
+        rgb: (H, W, 3) float32, row 0 at the top, recorded exposures divided out.
+        metadata: The header's ``NAME=value`` lines, the last of each name.
+    """
+
+    rgb: NDArray[np.float32]
+    metadata: Mapping[str, str] = field(default_factory=dict)
 
 
 def read_hdr(path: Path | str) -> NDArray[np.float32]:
@@ -44,16 +61,26 @@ def read_hdr(path: Path | str) -> NDArray[np.float32]:
     Raises:
         InputError: No such file, no Radiance RGBE picture, cut short, or absurdly large.
     """
+    return read_hdr_image(path).rgb
+
+
+def read_hdr_image(path: Path | str) -> HdrImage:
+    """As :func:`read_hdr`, with the header's variables."""
     file = Path(path)
     try:
         data = file.read_bytes()
     except OSError as error:
         raise InputError(f"can't read this picture: {error.strerror}", where=str(file)) from error
-    return decode_hdr(data, str(file))
+    return decode_hdr_image(data, str(file))
 
 
 def decode_hdr(data: bytes, where: str = "picture") -> NDArray[np.float32]:
     """Decodes a whole file; see :func:`read_hdr`."""
+    return decode_hdr_image(data, where).rgb
+
+
+def decode_hdr_image(data: bytes, where: str = "picture") -> HdrImage:
+    """Decodes a whole file; see :func:`read_hdr_image`."""
     header = _parse_header(data, where)
     try:
         rgbe = _decode_scanlines(data, header)
@@ -61,19 +88,30 @@ def decode_hdr(data: bytes, where: str = "picture") -> NDArray[np.float32]:
         raise InputError(f"its pixels can't be decoded: {error}", where=where, fix=_REPAIR) from error
     rgb = linear_from_rgbe(rgbe) / np.float32(header.exposure)
     rgb = rgb[:: -1 if header.flip_scanlines else 1, :: -1 if header.flip_pixels else 1]
-    return np.ascontiguousarray(rgb.swapaxes(0, 1) if header.columns_first else rgb)
+    upright = np.ascontiguousarray(rgb.swapaxes(0, 1) if header.columns_first else rgb)
+    return HdrImage(upright, header.variables)
 
 
-def write_hdr(path: Path | str, rgb: NDArray) -> None:
-    """Writes (H, W, 3) linear values as flat RGBE, rounded to nearest; negative ones become 0.
+def write_hdr(path: Path | str, rgb: NDArray, metadata: Mapping[str, str] | None = None) -> None:
+    """Writes (H, W, 3) linear values as RGBE, rounded to nearest; negative ones and NaN become 0.
 
-    Flat pixels can't be taken for run-length codes: those start with mantissas under 128 in the
-    three first bytes, and the largest mantissa of a pixel of ours is at least 128.
+    Run-length encoded the new way where the width allows it, else flat. Flat pixels of ours can't be
+    taken for runs: those start with mantissas under 128 in the three first bytes, and the largest
+    mantissa of a pixel is at least 128.
+
+    Args:
+        path: The file.
+        rgb: The pixels, row 0 at the top.
+        metadata: Further ``NAME=value`` lines of the header.
     """
     height, width = rgb.shape[:2]
-    head = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n"
+    lines = "".join(f"{name}={value}\n" for name, value in sorted((metadata or {}).items()))
+    head = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n{lines}\n-Y {height} +X {width}\n"
     with write_atomic(path) as stream:
-        stream.write(head.encode("ascii") + rgbe_from_linear(rgb).tobytes())
+        stream.write(head.encode("ascii"))
+        for start in range(0, height, _BAND_ROWS):
+            rgbe = rgbe_from_linear(rgb[start : start + _BAND_ROWS])
+            stream.write(hdr_runs.encode_scanlines(rgbe) if width in hdr_runs.WIDTHS else rgbe.tobytes())
 
 
 def linear_from_rgbe(rgbe: U8) -> NDArray[np.float32]:
@@ -104,6 +142,7 @@ def _parse_header(data: bytes, where: str) -> _Header:
     if not blank or not newline or size is None or size[2] == size[5]:
         raise InputError("expected a size line such as '-Y 512 +X 1024'", where=where, fix=_REPAIR)
     n_scanlines, scanline_px = int(size[3]), int(size[6])
+    lines = head.split(b"\n")[1:]
     check_image_size(scanline_px, n_scanlines, where)
     return _Header(
         n_scanlines=n_scanlines,
@@ -112,8 +151,14 @@ def _parse_header(data: bytes, where: str) -> _Header:
         flip_scanlines=size[1] == (b"+" if size[2] == b"Y" else b"-"),
         flip_pixels=size[4] == (b"+" if size[5] == b"Y" else b"-"),
         pixels_at=len(head) + 2 + len(size_line) + 1,
-        exposure=_exposure(head.split(b"\n")[1:], where),
+        exposure=_exposure(lines, where),
+        variables=_variables(lines),
     )
+
+
+def _variables(lines: list[bytes]) -> dict[str, str]:
+    pairs = (line.decode("utf-8", "replace").partition("=") for line in lines if not line.startswith(b"#"))
+    return {name.strip(): value.strip() for name, separator, value in pairs if separator}
 
 
 def _exposure(lines: list[bytes], where: str) -> float:
@@ -142,7 +187,7 @@ def _decode_scanlines(data: bytes, header: _Header) -> U8:
     pixels = np.empty((header.n_scanlines, width, 4), np.uint8)
     flat = pixels.size
     for row in range(header.n_scanlines):
-        if width in _RLE_WIDTHS and data[at] == 2 and data[at + 1] == 2 and data[at + 2] < 128:
+        if width in hdr_runs.WIDTHS and data[at] == 2 and data[at + 1] == 2 and data[at + 2] < 128:
             if data[at + 2] << 8 | data[at + 3] != width:
                 raise ValueError(f"scanline {row} has another width")
             planes, at = _decode_new_scanline(data, at + 4, width)
