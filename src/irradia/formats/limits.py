@@ -1,4 +1,4 @@
-"""How large an image may be before a header is taken for damage, or for an attack."""
+"""How large an image may be before a header is taken for damage or for an attack, and how bright a half."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from irradia.core.errors import InputError
 
 MAX_SIDE_PX = 32768
 MAX_PIXELS = 1 << 28  # 3 GiB as RGB float32
+HALF_MAX = 65504.0  # the largest finite half float
 
 
 def check_image_size(width_px: int, height_px: int, where: str, n_layers: int = 1) -> None:
