@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import struct
 import zlib
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -25,15 +26,18 @@ _BAND_ROWS = 256
 _COLOUR_TYPE = {1: 0, 2: 4, 3: 2, 4: 6}  # channels → grey, grey + alpha, RGB, RGBA
 
 
-def write_png(path: Path | str, pixels: NDArray) -> None:
+def write_png(path: Path | str, pixels: NDArray, text: Mapping[str, str] | None = None) -> None:
     """Writes :func:`encode_png`'s bytes."""
-    data = encode_png(pixels)
+    data = encode_png(pixels, text)
     with write_atomic(path) as stream:
         stream.write(data)
 
 
-def encode_png(pixels: NDArray) -> bytes:
-    """A PNG of (H, W) or (H, W, 1 … 4) uint8 or uint16 pixels, as they are: nothing is sRGB-coded here."""
+def encode_png(pixels: NDArray, text: Mapping[str, str] | None = None) -> bytes:
+    """A PNG of (H, W) or (H, W, 1 … 4) uint8 or uint16 pixels, as they are: nothing is sRGB-coded here.
+
+    ``text`` maps Latin-1 keywords of up to 79 characters to any text, one iTXt chunk each.
+    """
     planes = pixels if pixels.ndim == 3 else pixels[..., None]
     height, width, n_channels = planes.shape
     depth = planes.dtype.itemsize * 8
@@ -43,7 +47,8 @@ def encode_png(pixels: NDArray) -> bytes:
     head = struct.pack(">IIBBBBB", width, height, depth, _COLOUR_TYPE[n_channels], 0, 0, 0)
     rows = np.ascontiguousarray(planes, planes.dtype.newbyteorder(">")).view(np.uint8).reshape(height, -1)
     body = _compress(rows, n_channels * depth // 8)
-    return _SIGNATURE + _chunk(b"IHDR", head) + _chunk(b"IDAT", body) + _chunk(b"IEND", b"")
+    notes = b"".join(_chunk(b"iTXt", _international_text(*item)) for item in sorted((text or {}).items()))
+    return _SIGNATURE + _chunk(b"IHDR", head) + notes + _chunk(b"IDAT", body) + _chunk(b"IEND", b"")
 
 
 def read_png_linear(path: Path | str) -> NDArray[np.float32]:
@@ -66,6 +71,11 @@ def read_png_linear(path: Path | str) -> NDArray[np.float32]:
     if wide:
         coded = np.repeat(coded[..., None], 3, axis=-1)
     return linear_from_srgb(coded / np.float32(65535.0 if wide else 255.0))
+
+
+def _international_text(keyword: str, text: str) -> bytes:
+    """Uncompressed, of no language."""
+    return keyword.encode("latin-1") + bytes(5) + text.encode("utf-8")
 
 
 def _chunk(kind: bytes, body: bytes) -> bytes:
