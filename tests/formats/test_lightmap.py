@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 
 from irradia.core.errors import InputError
-from irradia.formats.exr import read_exr, write_exr_rgb
+from irradia.formats.exr import read_exr, read_exr_image, read_exr_metadata, write_exr, write_exr_rgb
 from irradia.formats.lightmap import (
     LightmapFile,
     is_lightmap,
     make_lightmap,
     power_of_two_scale,
     read_lightmap,
+    unit_of,
     write_lightmap,
 )
 
@@ -63,6 +64,72 @@ def test_uncovered_texels_choose_neither_scale_nor_exposure(lightmap: LightmapFi
 def test_black_lightmap_has_scale_1_and_exposure_0() -> None:
     black = make_lightmap(np.zeros((1, 2, 2, 3), np.float32), np.ones((1, 2, 2), np.float32))
     assert (black.scale, black.exposure_ev) == (1.0, 0.0)
+
+
+@pytest.mark.parametrize("brightness", [1e-5, 1.0, 1e7])
+def test_half_floats_hold_any_brightness_to_eleven_bits(
+    tmp_path: Path, lightmap: LightmapFile, brightness: float
+) -> None:
+    bright = make_lightmap(lightmap.pages * np.float32(brightness), lightmap.coverage)
+    paths = write_lightmap(tmp_path / "lightmap.half.exr", bright, half=True)
+    assert [path.name for path in paths] == ["lightmap.half.exr", "lightmap.half.1.exr"]
+    stored = read_exr_image(paths[0])
+    assert {plane.dtype for plane in stored.channels.values()} == {np.dtype(np.float16)}
+    assert stored.metadata["irradia:unit"] == stored.metadata["irradia:scale"] == bright.scale
+    assert 0.1 < np.percentile(stored.channels["G"].astype(np.float64), 99) < 2.0
+    back = read_lightmap(paths[0])
+    np.testing.assert_allclose(back.pages, bright.pages, rtol=2.0**-11)
+    assert back.scale == bright.scale
+
+
+def test_further_channels_come_back_in_their_types(tmp_path: Path, lightmap: LightmapFile) -> None:
+    rng = np.random.default_rng(18)
+    validity = rng.random((2, 12, 9)).astype(np.float16)
+    samples = rng.integers(0, 1 << 20, (2, 12, 9), np.uint32)
+    both = replace(lightmap, extra={"validity": validity, "samples": samples})
+    for half in (False, True):
+        found = read_lightmap(write_lightmap(tmp_path / "lightmap.exr", both, half=half)[0]).extra
+        assert {name: plane.dtype for name, plane in found.items()} == {
+            "samples": np.dtype(np.uint32),
+            "validity": np.dtype(np.float16),
+        }
+        np.testing.assert_array_equal(found["samples"], samples)
+        np.testing.assert_array_equal(found["validity"], validity)
+
+
+def test_three_js_reads_half_and_float(web_check, tmp_path: Path, lightmap: LightmapFile) -> None:
+    for half in (False, True):
+        path = write_lightmap(tmp_path / "lightmap.exr", lightmap, half=half)[0]
+        size = web_check("read-image", path, tmp_path / "pixels.bin")
+        pixels = np.frombuffer((tmp_path / "pixels.bin").read_bytes(), "<f4")
+        pixels = pixels.reshape(size["height"], size["width"], 4)[::-1, :, :3]  # three.js: bottom row first
+        np.testing.assert_array_equal(pixels, read_exr(path))
+
+
+def test_version_1_had_no_unit(tmp_path: Path, lightmap: LightmapFile) -> None:
+    path = write_lightmap(tmp_path / "lightmap.exr", replace(lightmap, pages=lightmap.pages[:1]))[0]
+    image = read_exr_image(path)
+    old = {key: value for key, value in image.metadata.items() if key.startswith("irradia:")}
+    del old["irradia:unit"]
+    write_exr(path, image.channels, old | {"irradia:version": 1})
+    np.testing.assert_array_equal(read_lightmap(path).pages, lightmap.pages[:1])
+
+
+@pytest.mark.parametrize("unit", ["nan", "inf", "0", "-2", "3", "1e300", "two"])
+def test_units_that_are_no_power_of_two_are_refused(unit: str) -> None:
+    attributes = {"irradia:quantity": "irradiance_over_pi", "irradia:version": "2"}
+    assert unit_of(attributes | {"irradia:unit": "0.25"}, "a.hdr") == 0.25
+    with pytest.raises(InputError, match="power of two"):
+        unit_of(attributes | {"irradia:unit": unit}, "a.hdr")
+
+
+def test_later_versions_are_refused(tmp_path: Path, lightmap: LightmapFile) -> None:
+    path = write_lightmap(tmp_path / "lightmap.exr", replace(lightmap, pages=lightmap.pages[:1]))[0]
+    image = read_exr_image(path)
+    later = {**read_exr_metadata(path), "irradia:version": 3}
+    write_exr(path, image.channels, {k: v for k, v in later.items() if k.startswith("irradia:")})
+    with pytest.raises(InputError, match="version 2, found 3"):
+        read_lightmap(path)
 
 
 def test_missing_page_is_an_input_error(tmp_path: Path, lightmap: LightmapFile) -> None:
