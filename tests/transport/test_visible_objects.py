@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from irradia.scene.environment import environment_from_color
-from irradia.scene.merge import LEVEL_BITS, merge
+from irradia.scene.merge import CAMERA_LOD, LEVEL_BITS, merge, seen_by_camera
 from irradia.scene.types import Material
 
 from .flat_scenes import (
@@ -158,6 +158,35 @@ def test_triangles_keep_their_numbers_behind_a_receive_only_object():
 def test_receive_only_lamp_lights_nothing():
     world = world_of(stacked([Sheet(BLACK), Sheet(LAMP, y=1.0, up=False, instance={"casts": False})]))
     assert not irradiance_over_pi(world, 0).any()
+
+
+@pytest.fixture
+def in_pictures():
+    """From the top: a coarse level, a receive-only lamp, a receive-only sheet, and the floor."""
+    from irradia.transport.world import World
+
+    ghost = {"casts": False}
+    scene = stacked(
+        [
+            Sheet(GREY, y=3.0, instance=level(0, 1)),
+            Sheet(LAMP, y=2.0, up=False, instance=ghost),
+            Sheet(GREY, y=1.0, instance=ghost),
+            Sheet(GREY, y=0.0),
+        ],
+        environment=environment_from_color((1.0, 1.0, 1.0)),
+    )
+    return World(scene, seen_by_camera(merge(scene)))
+
+
+def test_pictures_show_receive_only_objects(in_pictures):
+    assert hit_below(in_pictures, lod=CAMERA_LOD)[1] == pytest.approx(2.0, abs=1e-5)
+    assert hit_below(in_pictures, y=1.5, lod=CAMERA_LOD)[1] == pytest.approx(1.0, abs=1e-5)
+    assert hit_below(in_pictures)[1] == pytest.approx(0.0, abs=1e-5)
+
+
+def test_pictures_show_what_is_lit_as_if_receive_only_objects_were_not_there(in_pictures):
+    for triangle in (4, 6):
+        np.testing.assert_allclose(irradiance_over_pi(in_pictures, triangle), 1.0, rtol=1e-5)
 
 
 def test_receive_only_objects_are_lit_themselves():

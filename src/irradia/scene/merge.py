@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,9 @@ from irradia.scene.types import F32, U32, Scene
 
 LEVEL_BITS = 8
 """How much of :attr:`MergedMesh.lod` the level takes; the object's number stands above."""
+
+CAMERA_LOD = 0xFFFFFF << LEVEL_BITS | 1
+"""What a camera's rays carry: they see the finest levels, and what :func:`seen_by_camera` adds."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +76,14 @@ def merge(scene: Scene, layout: LightmapLayout | None = None) -> MergedMesh:
         casts=_casts(scene, instance),
         lod=_lod(scene, instance),
     )
+
+
+def seen_by_camera(mesh: MergedMesh) -> MergedMesh:
+    """The mesh as pictures need it: objects that don't cast are met too, but by a camera's rays alone."""
+    if mesh.casts is None:
+        return mesh
+    lod = np.uint32(0) if mesh.lod is None else mesh.lod
+    return replace(mesh, casts=None, lod=np.where(mesh.casts, lod, np.uint32(CAMERA_LOD)))
 
 
 def _casts(scene: Scene, instance: U32) -> NDArray[np.bool_] | None:

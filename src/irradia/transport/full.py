@@ -7,6 +7,7 @@ and gloss add to a picture is not its error. Also a second opinion on our own in
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -70,7 +71,8 @@ def _sensor(camera: Camera, options: RenderOptions) -> Any:
 
 
 def _scene_dict(scene: Scene) -> dict[str, Any]:
-    mesh = merge(scene)
+    finest = tuple(instance for instance in scene.instances if instance.lod_level == 0)
+    mesh = merge(replace(scene, instances=finest))
     result: dict[str, Any] = {"type": "scene"}
     for index, material in enumerate(scene.materials):
         chosen = np.flatnonzero(mesh.material == index)

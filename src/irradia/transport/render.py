@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from irradia.core import InputError, Progress, Seed, silent_progress
 from irradia.scene.layout import LightmapLayout
-from irradia.scene.merge import merge
+from irradia.scene.merge import CAMERA_LOD, merge, seen_by_camera
 from irradia.scene.types import Camera, Scene
 from irradia.transport.backend import dr, mi
 from irradia.transport.geometry import Hit
@@ -128,7 +128,9 @@ class _Renderer:
     ) -> None:
         layout = lightmap.layout if lightmap else None
         size = (layout.width_px, layout.height_px) if layout else None
-        self._world = World(scene, merge(scene, layout), size, robust=not options.fast_rays)
+        mesh = seen_by_camera(merge(scene, layout))
+        self._world = World(scene, mesh, size, robust=not options.fast_rays)
+        self._lod = mi.UInt32(CAMERA_LOD) if self._world.geometry.has_lods else None
         self._cache = DisplayCache(lightmap.pages) if lightmap else None
         self._camera = camera
         self._width, self._height = options.width, options.height
@@ -153,7 +155,7 @@ class _Renderer:
         while k < last:
             sampler = Sampler(mi.UInt32(k), mi.UInt32(seed))
             origin, direction = self._camera_ray(pixel, sampler.next_2d())
-            ray = start(origin, direction, mi.Float(1.0), mi.Float(0.0), sampler, mi.Bool(True))
+            ray = start(origin, direction, mi.Float(1.0), mi.Float(0.0), sampler, mi.Bool(True), self._lod)
             ray = trace(self._world, ray, cache, cull_backs=True)
             total += ray.radiance
             k += 1

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from irradia.scene.merge import LEVEL_BITS, MergedMesh
+from irradia.scene.merge import CAMERA_LOD, LEVEL_BITS, MergedMesh
 from irradia.transport.backend import dr, mi
 
 NONE = 0xFFFFFFFF
@@ -92,7 +92,10 @@ class TracedTriangles:
 
     def lod(self, triangle: mi.UInt32, active: mi.Bool) -> mi.UInt32 | None:
         """The triangle's level of detail as rays from it carry it; None where nothing has any."""
-        return dr.gather(mi.UInt32, self._lod, triangle, active) if self.has_lods else None
+        if not self.has_lods:
+            return None
+        its_lod = dr.gather(mi.UInt32, self._lod, triangle, active)
+        return dr.select(its_lod == CAMERA_LOD, 0, its_lod)
 
     def seen(self, triangle: mi.UInt32, lod: mi.UInt32, active: mi.Bool) -> mi.Bool:
         """Whether surfaces of the level ``lod`` see a triangle: of their own object, only their level;
