@@ -79,7 +79,9 @@ def _read_file(path: Path) -> Iterator[MaterialOverride]:
     for name, view in JsonView(root, str(path)).entries():
         for key, _ in view.entries():
             _check_key(key, _MATERIAL_KEYS, f"{view.pointer}/{key}")
-        channels = {c: _channel(view, c, path.parent) for c in CHANNELS if view.has(c)}
+        channels: dict[Channel, ChannelOverride] = {
+            c: _channel(view, c, path.parent) for c in CHANNELS if view.has(c)
+        }
         mode = view.choice("alphaMode", _ALPHA_MODES) if view.has("alphaMode") else None
         cutoff = view.number("alphaCutoff", 0.5) if view.has("alphaCutoff") else None
         yield MaterialOverride(name, channels, cast("AlphaMode | None", mode), cutoff, view.pointer)
@@ -103,7 +105,7 @@ def _channel(material: JsonView, key: Channel, folder: Path) -> ChannelOverride:
 def _plain(value: Any, where: str, folder: Path | None) -> ChannelOverride:
     if isinstance(value, str) and folder is not None:
         return ChannelOverride(image=_read_image(folder / value, where))
-    values = value if isinstance(value, list) else [value]
+    values: list[Any] = value if isinstance(value, list) else [value]
     if not all(isinstance(v, int | float) and not isinstance(v, bool) for v in values):
         raise InputError(f"expected an image or numbers, found {str(value)[:60]!r}", where=where)
     return ChannelOverride(factor=_rgb(values, where))

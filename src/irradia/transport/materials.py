@@ -52,14 +52,14 @@ class Appearance:
         through: Share that passes unbent, coloured.
         coverage: Alpha after the alpha mode: the share of the surface that is there at all.
         reflected, transmitted: R and T: the shares that leave diffusely on the side where light came
-            from, and on the other; None where no material of the scene transmits diffusely.
+            from, and on the other.
     """
 
     reflectance: mi.Color3f
     through: mi.Color3f
     coverage: mi.Float
-    reflected: mi.Color3f | None = None
-    transmitted: mi.Color3f | None = None
+    reflected: mi.Color3f
+    transmitted: mi.Color3f
 
     @property
     def pass_probability(self) -> mi.Float:
@@ -68,8 +68,7 @@ class Appearance:
         A little is added to what stays, so that a surface that only emits is met too.
         """
         passes = dr.mean(self.through)
-        stays = self.reflectance if self.transmitted is None else self.reflected + self.transmitted
-        stays = dr.mean(stays) + 0.05 * self.coverage
+        stays = dr.mean(self.reflected + self.transmitted) + 0.05 * self.coverage
         return dr.select(passes > 0.0, passes / dr.maximum(passes + stays, 1e-20), 0.0)
 
 
@@ -148,7 +147,7 @@ class MaterialTable:
         unlit = (self.flags_of(material, active) & UNLIT) != 0
         reflectance = dr.select(unlit, 0.0, opaque * alpha)
         through = mi.Color3f(1.0 - alpha) + diffuse * (alpha * transmission)
-        looks = Appearance(reflectance, through, alpha)
+        looks = Appearance(reflectance, through, alpha, reflected=reflectance, transmitted=mi.Color3f(0.0))
         if self._translucent:
             stays = (1.0 - metallic) * (1.0 - transmission) * (1.0 - dr.max(fresnel))
             share, tint = self._diffuse_transmission(at)
@@ -191,7 +190,7 @@ class MaterialTable:
 
     @staticmethod
     def _split(looks: Appearance, reflected: mi.Color3f, transmitted: mi.Color3f, lit: mi.Bool) -> None:
-        """Adds R and T to a surface's looks; together they stay below the limit of reflectance."""
+        """Sets R and T of a surface; together they stay below the limit of reflectance."""
         scale = dr.minimum(MAX_REFLECTANCE / dr.maximum(reflected + transmitted, 1e-6), 1.0) * looks.coverage
         looks.reflected = dr.select(lit, reflected * scale, 0.0)
         looks.transmitted = dr.select(lit, transmitted * scale, 0.0)
