@@ -2,7 +2,9 @@
 
 This work is based on: Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree
 Splitting", without the splitting. On the way down, each turn goes by the importance of the two
-children's bounds (their section 5.2): power · cosines at both ends, as large as they can be · 1/d².
+children's bounds: power · cosines at both ends · 1/d². Where theirs (section 5.2) takes the largest
+cosines that angles of bounding cones allow, ours takes heights over planes, raised by the bounds'
+radius: 0 for the same places, smoother elsewhere, and without a square root for each cosine.
 
 The probability of a source can be asked for again from a ray's hit, which knows where the ray began but
 not the surface there. So the receiver's normal counts only where everything below a node is punctual,
@@ -17,10 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.transport.backend import dr, mi
-from irradia.transport.light_bounds import LightBounds
-from irradia.transport.light_tree_build import INDEX_BITS, LEAF, PUNCTUAL_ONLY, build_light_tree
+from irradia.transport.light_bounds import UNBOUNDED_M, LightBounds
+from irradia.transport.light_tree_build import ALL_ROUND, INDEX_BITS, LEAF, PUNCTUAL_ONLY, build_light_tree
 
-_NEAREST_SHARE = 0.5  # of a group's radius squared: how near it counts from inside its sphere
+# How near a group counts from inside its sphere, of its radius squared. The mean of 1/d² in a ball's
+# middle asks for 1/3, but misses the places beside one of the lamps: their error was half as large again.
+_NEARNESS = 0.05
+_LEAST_LIT = 0.05  # of a group's radius, added to the width of its cones: no group counts for nothing
 
 
 @dataclass
@@ -69,6 +74,7 @@ class LightTree:
         self._some_punctual = not is_surface.all()
         self._some_surface = bool(is_surface.any())
         self._some_face = bool((sources.spread < np.pi).any())
+        self._some_end = bool((sources.reach < UNBOUNDED_M).any())
         self.depth = table.depth
 
     @dr.syntax
@@ -115,9 +121,9 @@ class LightTree:
     def _turn(self, node: mi.UInt32, p: mi.Point3f, n: mi.Vector3f, active: mi.Bool) -> Turn:
         rows = [dr.gather(mi.Vector4f, self._nodes, node * 6 + i, active) for i in range(6)]
         links = [dr.reinterpret_array(mi.UInt32, rows[i].w) for i in (1, 4)]
-        by_normal = mi.Bool(self._some_punctual)
+        by_normal = dr.squared_norm(n) > 0.0
         if self._some_punctual and self._some_surface:
-            by_normal = (links[0] & PUNCTUAL_ONLY) != 0
+            by_normal &= (links[0] & PUNCTUAL_ONLY) != 0
         left, right = (self._importance(rows[i : i + 3], p, n, by_normal) for i in (0, 3))
         total = left + right
         return Turn(left / dr.maximum(total, 1e-37), total > 0.0, *links)
@@ -125,45 +131,39 @@ class LightTree:
     def _importance(
         self, rows: list[mi.Vector4f], p: mi.Point3f, n: mi.Vector3f, by_normal: mi.Bool
     ) -> mi.Float:
-        """No less than 0 wherever anything in these bounds sends light to ``p``."""
+        """Above 0 wherever anything in these bounds sends light to ``p``."""
         radius, power, reach = rows[0].w, rows[1].x, rows[2].w
         towards = mi.Vector3f(rows[0].x, rows[0].y, rows[0].z) - p
         distance2, radius2 = dr.squared_norm(towards), dr.square(radius)
-        inverse = dr.rsqrt(dr.maximum(distance2, 1e-24))
-        direction = towards * inverse
-        outside = distance2 > radius2
-        # θ_u: the angle in which the bounds are seen
-        sin_u = dr.minimum(radius * inverse, 1.0)
-        cos_u = dr.safe_sqrt(1.0 - dr.square(sin_u))
-        importance = power / dr.maximum(dr.maximum(distance2, _NEAREST_SHARE * radius2), 1e-12)
-        importance = dr.select(dr.square(reach + radius) > distance2, importance, 0.0)
-
-        # ---- at the source: θ' = max(θ − θ_o − θ_u, 0) against the directions that it faces ----
+        inverse = dr.rsqrt(distance2 + _NEARNESS * radius2 + 1e-12)
+        importance = power * dr.square(inverse)
+        if self._some_end:
+            importance = dr.select(dr.square(reach + radius) > distance2, importance, 0.0)
         if self._some_face:
-            cos_o, cos_e = rows[1].y, rows[1].z
-            axis = mi.Vector3f(rows[2].x, rows[2].y, rows[2].z)
-            cos_w = -dr.dot(axis, direction)
-            cos_f, sin_f = _turned_back(cos_w, _sine(cos_w), cos_o, _sine(cos_o))
-            cos_f, _ = _turned_back(cos_f, sin_f, cos_u, sin_u)
-            importance *= dr.select(outside, dr.select(cos_f > cos_e, cos_f, 0.0), 1.0)
-
-        # ---- at the receiver ----
+            along = -dr.dot(mi.Vector3f(rows[2].x, rows[2].y, rows[2].z), towards)
+            importance *= _facing(rows[1].y, rows[1].z, along, distance2, radius, inverse)
         if self._some_punctual:
-            cos_i = dr.dot(n, direction)
-            cos_r, _ = _turned_back(cos_i, _sine(cos_i), cos_u, sin_u)
-            bounded = by_normal & outside & (dr.squared_norm(n) > 0.0)
-            importance *= dr.select(bounded, dr.maximum(cos_r, 0.0), 1.0)
+            above = dr.clip((dr.dot(n, towards) + radius) * inverse, 0.0, 1.0)
+            importance *= dr.select(by_normal, above, 1.0)
         return importance
 
 
-def _turned_back(
-    cos_a: mi.Float, sin_a: mi.Float, cos_b: mi.Float, sin_b: mi.Float
-) -> tuple[mi.Float, mi.Float]:
-    """Cosine and sine of max(a − b, 0)."""
-    within = cos_a > cos_b
-    cosine = dr.select(within, 1.0, cos_a * cos_b + sin_a * sin_b)
-    return cosine, dr.select(within, 0.0, sin_a * cos_b - cos_a * sin_b)
+def _facing(
+    u: mi.Float, v: mi.Float, along: mi.Float, distance2: mi.Float, radius: mi.Float, inverse: mi.Float
+) -> mi.Float:
+    """How far sources turn towards the receiver, at best.
 
-
-def _sine(cosine: mi.Float) -> mi.Float:
-    return dr.safe_sqrt(1.0 - dr.square(cosine))
+    In the plane through their axis and the receiver, (``along``, ``across``), lie the directions that
+    they face, a cone of half-angle θ. Surfaces shine into the half-space before them: (u, v) = (cos θ,
+    sin θ), and the receiver's height over the nearest such plane counts as the cosine does. Spots
+    shine into the cone alone: (u, v) = (sin θ, −cos θ), and the depth below the cone's surface counts
+    against that on the axis, times the share of the group's cones that may hold one place, if they are
+    narrower than the group. The bounds' radius is added to either, so that 0 means dark.
+    """
+    across = dr.safe_sqrt(distance2 - dr.square(along))
+    width = u * dr.sqrt(distance2)
+    depth = u * along + v * across + radius
+    surface = dr.select(along >= width, 1.0, dr.clip(depth * inverse, 0.0, 1.0))
+    within = dr.rcp(width + radius + 1e-20)
+    spot = dr.clip(depth * within, 0.0, 1.0) * dr.square((width + _LEAST_LIT * radius) * within)
+    return dr.select(u > ALL_ROUND * 0.5, 1.0, dr.select(v < 0.0, spot, surface))

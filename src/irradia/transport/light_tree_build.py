@@ -1,12 +1,16 @@
 """Builds the tree over local light sources, on the host, one level at a time.
 
-Every node splits its sources into two halves of equal number: the tree is as shallow as can be, and
-the lanes of a packet, each on its own way down, arrive together. What is free is the direction of the
-cut: the coordinate, or the component of the direction that sources face, that leaves the smaller bounds.
+First the kinds part: lights that shine all round, spots, and surfaces. (One bound round a spot and a
+bulb shines everywhere as strongly as the spot does in its cone; under a ceiling with both, the bulbs
+beside no spot were then picked a hundred times too rarely.) Below that every node splits its sources
+into two halves of equal number: the tree is as shallow as can be, and the lanes of a packet, each on its
+own way down, arrive together. What is free is the direction of the cut: the coordinate, or the component
+of the direction that sources face, that leaves the smaller bounds.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +22,7 @@ LEAF = 0x80000000  # in a link: the rest is the source's number
 PUNCTUAL_ONLY = 0x40000000  # in a left link: nothing below this node's parent is a surface
 INDEX_BITS = 0x3FFFFFFF
 CHILD_WORDS = 12
+ALL_ROUND = 4.0  # stands where no direction counts
 
 
 @dataclass(frozen=True)
@@ -25,18 +30,15 @@ class LightTreeTable:
     """A built tree.
 
     Attributes:
-        nodes: (M, 2, 12) float32: each inner node's two children as centre, radius; power, cosine of
-            the spread, cosine of spread's falloff, link; axis, reach.
+        nodes: (M, 2, 12) float32: each inner node's two children as centre, radius; power, u, v, link;
+            axis, reach. The pair (u, v) says what the group shines into, see ``light_tree``.
         trail: (N,) uint32 the turns from the root to each source, first turn in the lowest bit.
+        depth: Turns to the deepest source.
     """
 
     nodes: NDArray[np.float32]
     trail: NDArray[np.uint32]
-
-    @property
-    def depth(self) -> int:
-        """Turns to the deepest source."""
-        return max(len(self.trail) - 1, 1).bit_length()
+    depth: int
 
 
 def build_light_tree(sources: LightBounds, is_surface: NDArray[np.bool_]) -> LightTreeTable:
@@ -47,22 +49,23 @@ def build_light_tree(sources: LightBounds, is_surface: NDArray[np.bool_]) -> Lig
         is_surface: (N,) which of them rays can meet.
     """
     count = len(sources)
-    order = np.arange(count)
+    kind = _kinds(sources)
+    order = np.argsort(kind, kind="stable")
     starts, sizes = np.array([0]), np.array([count])  # of this level's inner nodes, in ``order``
     trail = np.zeros(count, np.uint32)
     rows: list[NDArray[np.float32]] = []
     n_nodes = 0
-    for level in range(count.bit_length() + 1):
-        if not len(starts):
-            break
+    while len(starts):
         members, node = _members(order, starts, sizes)
-        members = _best_order(sources, members, node, sizes)
+        n_first = _n_of_first_kind(kind[members], node, sizes)
+        one_kind = n_first == sizes
+        members = np.where(one_kind[node], _best_order(sources, members, node, sizes), members)
         order[_places(starts, sizes)] = members
-        n_left = (sizes + 1) // 2
+        n_left = np.where(one_kind, (sizes + 1) // 2, n_first)
         child_starts = np.stack([starts, starts + n_left], axis=1).ravel()
         child_sizes = np.stack([n_left, sizes - n_left], axis=1).ravel()
         goes_right = (_rank(sizes) >= n_left[node]).astype(np.uint32)
-        trail[members] |= goes_right << np.uint32(level)
+        trail[members] |= goes_right << np.uint32(len(rows))
 
         bounds = bounds_of_groups(sources.take(members), np.cumsum([0, *child_sizes[:-1]]))
         inner = child_sizes > 1
@@ -73,7 +76,28 @@ def build_light_tree(sources: LightBounds, is_surface: NDArray[np.bool_]) -> Lig
         link[::2] |= np.where(pure, np.uint32(PUNCTUAL_ONLY), np.uint32(0))
         rows.append(_rows(bounds, link).reshape(-1, 2, CHILD_WORDS))
         starts, sizes = child_starts[inner], child_sizes[inner]
-    return LightTreeTable(np.concatenate(rows), trail)
+    return LightTreeTable(np.concatenate(rows), trail, depth=len(rows))
+
+
+def _kinds(sources: LightBounds) -> NDArray[np.int64]:
+    """0 where sources shine all round, 1 for spots, 2 for surfaces."""
+    return np.where(_shines_all_round(sources), 0, np.where(_falls_with_cosine(sources), 2, 1))
+
+
+def _shines_all_round(bounds: LightBounds) -> NDArray[np.bool_]:
+    return bounds.spread >= math.pi / 2
+
+
+def _falls_with_cosine(bounds: LightBounds) -> NDArray[np.bool_]:
+    return bounds.falloff > math.pi / 4
+
+
+def _n_of_first_kind(
+    kind: NDArray[np.int64], node: NDArray[np.int64], sizes: NDArray[np.int64]
+) -> NDArray[np.int64]:
+    """How many of each node's members are of its first member's kind."""
+    first = np.cumsum([0, *sizes[:-1]])
+    return np.add.reduceat((kind == kind[first][node]).astype(np.int64), first)
 
 
 def _members(
@@ -131,7 +155,16 @@ def _cost(bounds: LightBounds) -> F64:
 def _rows(bounds: LightBounds, link: NDArray[np.uint32]) -> NDArray[np.float32]:
     rows = np.zeros((len(bounds), CHILD_WORDS), np.float32)
     rows[:, 0:3], rows[:, 3] = bounds.centre, bounds.radius
-    rows[:, 4], rows[:, 5] = bounds.power, np.cos(bounds.spread)
-    rows[:, 6], rows[:, 7] = np.cos(bounds.falloff), link.view(np.float32)
+    rows[:, 4], rows[:, 7] = bounds.power, link.view(np.float32)
+    rows[:, 5], rows[:, 6] = _shone_into(bounds)
     rows[:, 8:11], rows[:, 11] = bounds.axis, bounds.reach
     return rows
+
+
+def _shone_into(bounds: LightBounds) -> tuple[F64, F64]:
+    """(u, v): a cone of spots, the half-spaces before surfaces, or everything."""
+    cosine, sine = np.cos(bounds.spread), np.sin(bounds.spread)
+    surfaces = _falls_with_cosine(bounds)
+    u = np.where(_shines_all_round(bounds), ALL_ROUND, np.where(surfaces, cosine, sine))
+    v = np.where(surfaces, sine, -np.maximum(cosine, 1e-6))
+    return u, v
