@@ -111,10 +111,22 @@ def test_a_light_below_a_floor_does_not_reach_its_top():
 
 def test_a_lamp_between_two_steps_reaches_the_lower_one(monkeypatch):
     monkeypatch.setattr(light_reach, "_N_PATCHES", 1)
+    monkeypatch.setattr(light_reach, "_JUMPS_ACROSS", 1)
     patches = cut_patches(_mesh(_FLOOR, quad((-5, 1, -5), (0, 0, 10), (2, 0, 0))))
-    assert len(patches.low) == 1
+    assert len(patches.low) == 1  # of both steps
     assert reaches(Light("point", (1, 1, 1), position=(0.0, 0.1, 0.0)), patches).all()
     assert not reaches(Light("point", (1, 1, 1), position=(0.0, -0.1, 0.0)), patches).any()
+
+
+def test_patches_of_many_small_pieces_stay_small(monkeypatch):
+    """Crates all over a large floor: a lamp beside one must not be said to reach another."""
+    monkeypatch.setattr(light_reach, "_N_PATCHES", 100)
+    crates = [
+        quad((x, 0.0, z), (0.1, 0, 0), (0, 0.1, 0)) for x in range(-12, 12, 3) for z in range(-12, 12, 3)
+    ]
+    patches = cut_patches(_mesh(quad((-12, 0, -12), (0, 0, 24), (24, 0, 0)), *crates))
+    of_crates = patches.high[:, 1] > 0.0
+    assert np.ptp([patches.low[of_crates], patches.high[of_crates]], axis=0).max() < 0.2
 
 
 def test_range_and_cone_are_resolved_to_a_small_part_of_the_floor():

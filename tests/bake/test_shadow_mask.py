@@ -111,6 +111,25 @@ def test_lights_of_one_channel_do_not_touch_each_other():
     assert not mask.lit[far].any()
 
 
+def test_overlapping_lights_keep_to_their_channels():
+    slanted = replace(_DOWN, direction=(np.sqrt(0.5), -np.sqrt(0.5), 0.0))
+    traced, plan, mask = _mask(quad_scene(_FLOOR, _LID, lights=(_DOWN, slanted), mapped=1))
+    assert sorted(plan.channels) == [0, 1]
+    x = traced.places[..., 0]
+    for channel, edge in zip(plan.channels, (0.0, 1.0), strict=True):
+        assert (mask.visibility[x.max(axis=1) < edge - 1e-3, channel] == 1.0).all()
+        assert (mask.visibility[x.min(axis=1) > edge + 1e-3, channel] == 0.0).all()
+
+
+def test_of_a_lamp_on_the_horizon_only_the_upper_half_counts():
+    """A wall hides all of its right side: half of what the floor could get."""
+    lamp = Light("point", (1, 1, 1), position=(0.0, 0.0, 3.0), radius_m=1.0, mode="mixed")
+    wall = quad((0, 0, 0), (20, 0, 0), (0, 20, 0))
+    traced, _, mask = _mask(quad_scene(_FLOOR, wall, lights=(lamp,), mapped=1), samples=256)
+    middle = np.abs(traced.places - (0.0, 0.0, -3.0)).max(axis=(1, 2)) < 0.4
+    assert mask.visibility[middle, 0].mean() == pytest.approx(0.5, abs=0.02)
+
+
 def test_channels_without_a_light_are_white():
     traced, _, mask = _mask(quad_scene(_FLOOR, _LID, lights=(_DOWN,), mapped=1))
     valid = np.ones(len(mask.lit), bool)

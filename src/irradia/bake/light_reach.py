@@ -9,7 +9,7 @@ not to reach, it doesn't.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +18,10 @@ from irradia.core.colour import LUMINANCE_WEIGHTS
 from irradia.scene.merge import MergedMesh
 from irradia.scene.types import F64, Light
 
-_N_PATCHES = 1 << 15  # about as many as there will be: 1,000 lights take 2 s
+_N_PATCHES = 1 << 14  # about as many as there will be
 _MAX_QUARTERINGS = 12
 _MORTON_BITS = 10
+_JUMPS_ACROSS = 64
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,10 @@ class Patches:
     lowest: F64
     area_m2: F64
 
+    def take(self, chosen: NDArray[np.bool_]) -> Patches:
+        """Some of them."""
+        return Patches(**{field.name: getattr(self, field.name)[chosen] for field in fields(self)})
+
     @property
     def centre(self) -> F64:
         """(K, 3) the middle of the bounds."""
@@ -54,8 +59,9 @@ def cut_patches(mesh: MergedMesh) -> Patches:
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(cross, axis=1)
     normals = cross / np.maximum(length, 1e-300)[:, None]
-    order = np.lexsort((_morton(corners.mean(axis=1)), _dominant_side(normals)))
-    starts = np.arange(0, len(order), max(1, math.ceil(len(order) / _N_PATCHES)))
+    centres, side = corners.mean(axis=1), _dominant_side(normals)
+    order = np.lexsort((_morton(centres), side))
+    starts = _starts_of_runs(centres[order], side[order])
     return _gather_runs(corners[order], normals[order], length[order] / 2, starts)
 
 
@@ -64,9 +70,11 @@ def reaches(light: Light, patches: Patches) -> NDArray[np.bool_]:
     if light.kind == "directional":
         slack = math.sin(min(math.radians(light.angle_deg) / 2, math.pi / 2))
         return _facing(patches, -np.array(light.direction), np.zeros(1), slack)
-    towards = np.array(light.position) - patches.centre
-    facing = _facing(patches, towards, patches.lowest, light.radius_m)
-    return facing & _in_range(light, patches) & _in_cone(light, patches)
+    reached = _in_range(light, patches)
+    near = patches.take(reached)
+    towards = np.array(light.position) - near.centre
+    reached[reached] = _facing(near, towards, near.lowest, light.radius_m) & _in_cone(light, near)
+    return reached
 
 
 def strength(light: Light, patches: Patches, reached: NDArray[np.bool_]) -> float:
@@ -114,6 +122,16 @@ def _morton(points: F64) -> NDArray[np.uint32]:
         for bit in range(_MORTON_BITS):
             code |= ((column >> bit) & 1) << np.uint32(3 * bit + axis)
     return code
+
+
+def _starts_of_runs(centres: F64, side: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Where runs begin: each is at most so long, faces one way and nowhere jumps across the scene."""
+    longest = max(1, math.ceil(len(centres) / _N_PATCHES))
+    jump_m = float(np.ptp(centres, axis=0).max()) / _JUMPS_ACROSS
+    begins = np.arange(len(centres)) % longest == 0
+    begins[1:] |= side[1:] != side[:-1]
+    begins[1:] |= (np.abs(np.diff(centres, axis=0)) > jump_m).any(axis=1)
+    return np.flatnonzero(begins)
 
 
 def _gather_runs(corners: F64, normals: F64, area: F64, starts: NDArray[np.intp]) -> Patches:
