@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from irradia.formats.ies import IesTable, decode_ies
-from irradia.scene.light_profile import light_candela, profile_from_ies
+from irradia.scene.light_profile import light_candela, mean_candela, profile_from_ies
 from irradia.scene.monotone_cubic import monotone_cubic
 from irradia.scene.types import Light
 
@@ -113,6 +113,13 @@ def test_profile_turns_with_its_light():
     r, down = np.sin(np.radians(v)), np.cos(np.radians(v))
     hung = np.stack([r * np.cos(np.radians(h)), -down, -r * np.sin(np.radians(h))], axis=-1)
     np.testing.assert_allclose(light_candela(light, hung), light_candela(upright, towards(v, h)), rtol=1e-5)
+
+
+def test_mean_candela_are_lumens_over_4_pi():
+    """A cosine over one half-space: π·I lumens."""
+    angles = np.linspace(0, 90, 181)
+    cosine = IesTable("C", angles, np.zeros(1), 100.0 * np.cos(np.radians(angles))[None], 2002, {})
+    assert mean_candela(profile_from_ies(cosine)) == pytest.approx(100.0 / 4, rel=1e-3)
 
 
 def test_up_along_the_beam_is_no_obstacle():

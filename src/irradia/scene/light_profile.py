@@ -61,6 +61,12 @@ def light_candela(light: Light, direction: F64) -> F64:
     return bilinear(light.profile.candela, vertical, horizontal)
 
 
+def mean_candela(profile: IesProfile) -> float:
+    """Over all directions: the light's lumens / 4π."""
+    weight = np.sin(np.linspace(0.0, np.pi, len(profile.candela)))
+    return float(profile.candela[:, :-1].mean(axis=1) @ weight / weight.sum())
+
+
 def profile_frame(light: Light) -> tuple[F64, F64, F64]:
     """World directions of θ = 0, of (θ, φ) = (90°, 0°) and of (90°, 90°)."""
     axis = np.array(light.direction, np.float64)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.core import Progress, Seed
+from irradia.scene.light_profile import mean_candela
 from irradia.scene.merge import MergedMesh, merge
 from irradia.scene.types import Camera, Environment, Light, Material, Scene, TextureRef
 from irradia.transport.backend import mi
@@ -79,7 +80,8 @@ def _scene_dict(scene: Scene) -> dict[str, Any]:
         if len(chosen):
             result[f"mesh{index}"] = _mesh(mesh, chosen, material, scene)
     for index, light in enumerate(scene.lights):
-        result[f"light{index}"] = _light(light)
+        if light.mode != "off":
+            result[f"light{index}"] = _light(light)
     if scene.environment is not None:
         result["environment"] = _environment(scene.environment)
     return result
@@ -195,10 +197,12 @@ def _bitmap(scene: Scene, texture: TextureRef, pixels: NDArray | None, *, raw: b
 
 
 def _light(light: Light) -> dict[str, Any]:
-    intensity = {"type": "rgb", "value": list(light.intensity)}
+    """A light without size; a measured one shines evenly with the mean of its candela."""
+    strength = 1.0 if light.profile is None else mean_candela(light.profile)
+    intensity = {"type": "rgb", "value": [strength * channel for channel in light.intensity]}
     if light.kind == "directional":
         return {"type": "directional", "direction": list(light.direction), "irradiance": intensity}
-    if light.kind == "point":
+    if light.kind == "point" or light.profile is not None:
         return {"type": "point", "position": list(light.position), "intensity": intensity}
     target = [p + d for p, d in zip(light.position, light.direction, strict=True)]
     up = [0.0, 1.0, 0.0] if abs(light.direction[1]) < 0.99 else [1.0, 0.0, 0.0]

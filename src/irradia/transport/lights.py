@@ -148,7 +148,7 @@ class Lights:
             mi.Vector3f(0, 0, 1), mi.Float(FAR), mi.Color3f(0.0), mi.Float(0.0), mi.UInt32(NO_LIGHT)
         )
         p_near = self.p_distant + self.p_local
-        choice, on_punctual = None, mi.Bool(False)
+        choice, near, on_punctual = None, mi.Bool(False), mi.Bool(False)
         if self._local is not None:
             near = active & (pick >= self.p_distant) & (pick < p_near)
             spare = (pick - self.p_distant) / self.p_local
