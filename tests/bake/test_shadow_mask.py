@@ -7,13 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from irradia.bake.finish import Finisher, FinishOptions
 from irradia.bake.shadow_mask import (
     ShadowMaskOptions,
     ShadowMaskPlan,
     bake_shadow_mask,
+    finish_shadow_mask,
     plan_shadow_mask,
-    shadow_mask_pages,
 )
+from irradia.core import silent_progress
 from irradia.core.errors import InputError
 from irradia.scene.types import Light, Material
 
@@ -33,6 +35,13 @@ def _mask(scene, resolution=64, **options):
     chosen = ShadowMaskOptions(**options)
     mask = bake_shadow_mask(traced.world, traced.subsamples, traced.texels, scene.lights, plan, chosen)
     return traced, plan, mask
+
+
+def _pages(mask, traced, valid):
+    texels, options = traced.texels, FinishOptions(denoise=False, seams=False)
+    finisher = Finisher(texels, valid, options, silent_progress())
+    grey = np.ones((texels.n_pages, texels.height_px, texels.width_px, 3), np.float32)
+    return finish_shadow_mask(mask, texels, valid, grey, finisher)
 
 
 def test_a_sharp_shadow_is_black_inside_and_white_outside():
@@ -133,7 +142,7 @@ def test_of_a_lamp_on_the_horizon_only_the_upper_half_counts():
 def test_channels_without_a_light_are_white():
     traced, _, mask = _mask(quad_scene(_FLOOR, _LID, lights=(_DOWN,), mapped=1))
     valid = np.ones(len(mask.lit), bool)
-    pages = shadow_mask_pages(mask, traced.texels, valid)
+    pages = _pages(mask, traced, valid)
     assert pages.shape == (1, 64, 64, 4)
     assert (pages[..., 1:] == 1.0).all()
     np.testing.assert_array_equal(pages.reshape(-1, 4)[traced.texels.pixel, 0], mask.visibility[:, 0])
@@ -146,7 +155,7 @@ def test_where_no_light_shines_the_shadow_beside_it_goes_on():
     )
     scene = quad_scene(_FLOOR, _LID, lights=(replace(spot, mode="mixed"),), mapped=1)
     traced, _, mask = _mask(scene)
-    pages = shadow_mask_pages(mask, traced.texels, np.ones(len(mask.lit), bool))
+    pages = _pages(mask, traced, np.ones(len(mask.lit), bool))
     filled = pages.reshape(-1, 4)[traced.texels.pixel, 0]
     x, z = traced.places[..., 0].mean(axis=1), traced.places[..., 2].mean(axis=1)
     beside = (np.hypot(x, z) > 2.5) & ~mask.lit[:, 0] & (np.abs(z) < 1.0)
@@ -159,7 +168,7 @@ def test_hidden_texels_take_their_charts_shadow():
     x = traced.places[..., 0].mean(axis=1)
     valid = np.abs(x + 3.0) > 0.4
     wrong = replace(mask, visibility=np.where(valid[:, None], mask.visibility, np.float32(0.0)))
-    pages = shadow_mask_pages(wrong, traced.texels, valid)
+    pages = _pages(wrong, traced, valid)
     assert (pages.reshape(-1, 4)[traced.texels.pixel[~valid], 0] == 1.0).all()
 
 

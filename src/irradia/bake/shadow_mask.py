@@ -1,7 +1,7 @@
 """Shadow masks: for lights that shine live, which texels they reach, four lights to an image.
 
 Three steps: :func:`plan_shadow_mask`, before anything is traced, because lights that find no channel
-are then baked like others; :func:`bake_shadow_mask`; :func:`shadow_mask_pages`.
+are then baked like others; :func:`bake_shadow_mask`; :func:`finish_shadow_mask`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from irradia.bake.dilate import dilate, fill_invalid
+from irradia.bake.dilate import fill_invalid
 from irradia.bake.light_reach import cut_patches, reaches, strength
 from irradia.bake.mask_channels import N_CHANNELS, NO_CHANNEL, assign_channels
 from irradia.bake.texels import TexelSet
@@ -20,9 +20,10 @@ from irradia.core.errors import InputError
 from irradia.core.progress import Progress, silent_progress
 from irradia.core.rng import Seed
 from irradia.scene.merge import MergedMesh
-from irradia.scene.types import F32, Light
+from irradia.scene.types import F32, U32, Light
 
 if TYPE_CHECKING:
+    from irradia.bake.finish import Finisher
     from irradia.transport.subsamples import Subsamples
     from irradia.transport.world import World
 
@@ -166,7 +167,14 @@ def bake_shadow_mask(
     return ShadowMask(visibility, lit)
 
 
-def shadow_mask_pages(mask: ShadowMask, texels: TexelSet, valid: NDArray[np.bool_]) -> F32:
+def finish_shadow_mask(
+    mask: ShadowMask,
+    texels: TexelSet,
+    valid: NDArray[np.bool_],
+    pages: F32,
+    finisher: Finisher,
+    region: U32 | None = None,
+) -> F32:
     """Pages on which every texel has a value.
 
     Where a channel's lights don't shine, it continues the shadows beside it on the chart, so that
@@ -176,15 +184,18 @@ def shadow_mask_pages(mask: ShadowMask, texels: TexelSet, valid: NDArray[np.bool
         mask: From :func:`bake_shadow_mask`.
         texels: Where its texels lie.
         valid: (N,) False where a texel lies inside something.
+        pages: (P, H, W, 3) the finished irradiance.
+        finisher: That made them.
+        region: (N,) of valid texels, finer than charts; shadows go on within one.
 
     Returns:
-        (pages, height, width, 4).
+        (P, H, W, 4) visibility in [0, 1].
     """
     values = mask.visibility.copy()
     for channel in np.flatnonzero(mask.lit.any(axis=0)):
         known = mask.lit[:, channel] & valid
-        values[:, channel] = fill_invalid(mask.visibility[:, channel, None], known, texels)[:, 0]
-    return dilate(values, texels)
+        values[:, channel] = fill_invalid(values[:, channel, None], known, texels, region)[:, 0]
+    return np.clip(finisher.companion(values, pages, lowest=0.0, relative=False), 0.0, 1.0)
 
 
 def _overlap(reached: NDArray[np.bool_]) -> NDArray[np.bool_]:
