@@ -93,8 +93,9 @@ def test_every_source_is_one_leaf_and_the_tree_is_as_shallow_as_its_kinds_let_it
 def test_bounds_hold_what_is_below_them():
     from irradia.transport.light_bounds import bounds_of_groups, bounds_of_lights
 
-    sources = bounds_of_lights(lamps(200)).joined(triangles(100))
-    starts = np.array([0, 50, 51, 180, 250])
+    spots = bounds_of_lights(lamps(200, kinds=("spot",)))
+    sources = spots.joined(triangles(100, double_sided=0.01))
+    starts = np.array([0, 2, 50, 51, 180, 250])
     groups = bounds_of_groups(sources, starts)
     for k, (first, last) in enumerate(zip(starts, [*starts[1:], 300], strict=True)):
         part = sources.take(np.arange(first, last))
@@ -105,6 +106,7 @@ def test_bounds_hold_what_is_below_them():
         assert groups.power[k] == pytest.approx(part.power.sum())
         assert groups.falloff[k] == part.falloff.max()
         assert groups.reach[k] == part.reach.max()
+    assert 0.0 < groups.spread[0] < math.pi
 
 
 @pytest.mark.parametrize("double_sided", [1.0, 0.3])
@@ -118,7 +120,9 @@ def test_probabilities_of_surfaces_and_of_dead_ends_sum_to_one_everywhere(double
     where, _ = places(200)
     lane = dr.arange(mi.UInt32, 200 * n)
     p = dr.gather(mi.Point3f, _p(where), lane // n)
-    found = np.array(tree.probability(lane % n, p, mi.Bool(True))).reshape(200, n).sum(axis=1)
+    found = (
+        np.array(tree.probability(lane % n, p, mi.Vector3f(0.0), mi.Bool(True))).reshape(200, n).sum(axis=1)
+    )
     lane = dr.arange(mi.UInt32, 200 << 12)
     u = (mi.Float(lane & 4095) + 0.5) / 4096.0
     pick = tree.pick(dr.gather(mi.Point3f, _p(where), lane >> 12), mi.Vector3f(0.0), u, mi.Bool(True))
@@ -143,7 +147,8 @@ def test_surfaces_are_picked_with_the_probability_that_is_asked_for_again():
         pick = tree.pick(_p(place), n, _uniform().x, mi.Bool(True))
         source, probability = np.array(pick.source), np.array(pick.probability)
         on_surface = is_surface[source] & (probability > 0)
-        again = np.array(tree.probability(pick.source, _p(place), mi.Bool(True)))
+        unknown = mi.Vector3f(0.0)
+        again = np.array(tree.probability(pick.source, _p(place), unknown, mi.Bool(True)))
         np.testing.assert_allclose(again[on_surface], probability[on_surface], rtol=1e-4)
 
 
@@ -178,7 +183,27 @@ def test_picks_come_as_often_as_they_say(with_surfaces):
 
 @pytest.mark.parametrize("kinds", [("point",), ("spot",), ("point", "spot")])
 def test_no_light_that_arrives_is_left_out(kinds):
-    """What the tree estimates is what all lights together send: it prunes nothing that counts."""
+    from irradia.transport.backend import dr, mi
+    from irradia.transport.light_bounds import bounds_of_lights
+    from irradia.transport.light_tree import LightTree
+    from irradia.transport.punctual import PunctualLights
+
+    n, n_places = 150, 2000
+    everyone = lamps(n, kinds=kinds)
+    tree = LightTree(bounds_of_lights(everyone), np.zeros(n, np.bool_))
+    lane = dr.arange(mi.UInt32, n * n_places)
+    where, normals = (_p(values) for values in places(n_places))
+    p, facing = (dr.gather(mi.Point3f, values, lane // n) for values in (where, normals))
+    u = _uniform(n * n_places)
+    direction, _, irradiance = PunctualLights(everyone).sample_one(p, lane % n, u, mi.Bool(True))
+    arrives = np.array((dr.dot(mi.Vector3f(facing), direction) > 1e-3) & (dr.max(irradiance) > 0.0))
+    probability = np.array(tree.probability(lane % n, p, mi.Vector3f(facing), mi.Bool(True)))
+    assert 0.01 < arrives.mean() < 0.6
+    assert (probability[arrives] > 0.0).all()
+
+
+@pytest.mark.parametrize("kinds", [("point",), ("spot",), ("point", "spot")])
+def test_estimate_is_what_all_lights_together_send(kinds):
     from irradia.transport.backend import dr, mi
     from irradia.transport.light_bounds import bounds_of_lights
     from irradia.transport.light_tree import LightTree

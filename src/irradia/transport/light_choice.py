@@ -131,7 +131,7 @@ class TreeChoice:
         inverse_area = self._area.inverse_area(triangle, active)
         shines = active & (inverse_area > 0.0)
         source = dr.gather(mi.UInt32, self._source, triangle, shines)
-        return self._tree.probability(source, origin, shines) * inverse_area
+        return self._tree.probability(source, origin, mi.Vector3f(0.0), shines) * inverse_area
 
 
 def emitter_bounds(

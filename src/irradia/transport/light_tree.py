@@ -102,14 +102,13 @@ class LightTree:
         return TreePick(link & INDEX_BITS, probability, rest)
 
     @dr.syntax
-    def probability(self, source: mi.UInt32, p: mi.Point3f, active: mi.Bool) -> mi.Float:
-        """With which probability :meth:`pick` gives a surface, whatever the receiver's normal."""
+    def probability(self, source: mi.UInt32, p: mi.Point3f, n: mi.Vector3f, active: mi.Bool) -> mi.Float:
+        """With which probability :meth:`pick` gives a source; that of a surface doesn't depend on ``n``."""
         trail = dr.gather(mi.UInt32, self._trail, source, active)
         link, probability = mi.UInt32(0), mi.Float(1.0)
-        nowhere = mi.Vector3f(0.0)
         going = mi.Bool(active)
         while going:
-            turn = self._turn(link & INDEX_BITS, p, nowhere, going)
+            turn = self._turn(link & INDEX_BITS, p, n, going)
             goes_left = (trail & 1) == 0
             chance = dr.select(goes_left, turn.p_left, 1.0 - turn.p_left)
             probability = dr.select(turn.lit, probability * chance, 0.0)
