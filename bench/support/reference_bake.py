@@ -10,14 +10,11 @@ error of a map is as well known from ten thousand of its texels as from all, at 
 from __future__ import annotations
 
 import argparse
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from irradia.bake.epochs import EpochPlan, run_epochs
-from irradia.bake.lightmap import BakeOptions, cover, prepare
-from irradia.core import Seed, silent_progress
+from irradia.bake.lightmap import BakeOptions, Selection, start_bake
 from irradia.transport import use_device
 from support.bench_scene import read_bench_scene
 
@@ -27,21 +24,13 @@ def main() -> None:
     arguments = _parse()
     use_device("cpu", arguments.threads)
     scene, layout = read_bench_scene(arguments.scene)
-    mesh, texels = cover(scene, layout)
     chosen = np.load(arguments.chosen)
-    texels = replace(
-        texels,
-        pixel=texels.pixel[chosen],
-        triangle=texels.triangle[chosen],
-        barycentric=texels.barycentric[chosen],
-        coverage=texels.coverage[chosen],
-        chart=texels.chart[chosen],
-    )
     options = BakeOptions(samples=arguments.samples, integrator="path", seed=arguments.seed, denoise=False)
-    light = prepare(scene, mesh, layout, texels, options)
-    clear = light.drop_hidden_subsamples() == 0.0
-    plan = EpochPlan.for_options(options.samples, cached=False)
-    values, _, _ = run_epochs(light, plan, options.n_direct, Seed(options.seed), silent_progress())
+    bake = start_bake(scene, layout, options, selection=Selection(covered=chosen))
+    for _ in bake.passes():
+        pass
+    values = bake.light.to_host(bake.bake.estimate())[chosen]
+    clear = bake.hidden_share[chosen] == 0.0
     np.savez(arguments.result, irradiance_over_pi=values, clear=clear)
 
 

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -121,18 +122,9 @@ def test_the_same_command_gives_the_same_bytes(tmp_path):
         assert (tmp_path / "first" / name).read_bytes() == (tmp_path / "second" / name).read_bytes(), name
 
 
-@pytest.mark.skipif(os.name == "nt", reason="sends SIGINT as POSIX terminals do")
-def test_ctrl_c_leaves_nothing_and_says_how_to_go_on(tmp_path):
-    command = [
-        "bake",
-        "builtin:cornell",
-        "-o",
-        str(tmp_path / "out"),
-        "--samples",
-        "1000000",
-        "--resolution",
-        "64",
-    ]
+def _interrupt(out: Path, after: str) -> tuple[int, str]:
+    """Sends Ctrl-C to a very long bake once a stage is done: exit code and what it said then."""
+    command = ["bake", "builtin:cornell", "-o", str(out), "--samples", "1000000", "--resolution", "64"]
     # Where tests run in the background, shells have them ignore SIGINT, and children inherit that.
     program = (
         "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
@@ -140,16 +132,33 @@ def test_ctrl_c_leaves_nothing_and_says_how_to_go_on(tmp_path):
     )
     running = subprocess.Popen([sys.executable, "-c", program, *command], stderr=subprocess.PIPE, text=True)
     assert running.stderr is not None
-    watchdog = threading.Timer(60.0, running.kill)
+    watchdog = threading.Timer(120.0, running.kill)
     watchdog.start()
-    while "ray tracing set-up" not in (line := running.stderr.readline()):
+    while after not in (line := running.stderr.readline()):
         assert line, "it ended before it traced"
     running.send_signal(signal.SIGINT)
     said = running.communicate()[1]
     watchdog.cancel()
-    assert running.returncode == app.INTERRUPTED
+    return running.returncode, said
+
+
+@pytest.mark.skipif(os.name == "nt", reason="sends SIGINT as POSIX terminals do")
+def test_ctrl_c_before_the_first_ray_leaves_nothing(tmp_path):
+    code, said = _interrupt(tmp_path / "out", after="ray tracing set-up")
+    assert code == app.INTERRUPTED
     assert "run again to go on" in said
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(os.name == "nt", reason="sends SIGINT as POSIX terminals do")
+def test_ctrl_c_during_the_gather_leaves_usable_results_and_a_way_to_go_on(tmp_path):
+    out = tmp_path / "out"
+    code, said = _interrupt(out, after="light bounces")
+    assert code == app.INTERRUPTED
+    assert "--resume goes on" in said
+    assert {"lightmap.exr", "scene.baked.glb", "bake.json", "bake.state"} <= {p.name for p in out.iterdir()}
+    record = json.loads((out / "bake.json").read_text())
+    assert record["stats"]["complete"] is False
 
 
 def test_people_get_three_lines(tmp_path, capfd):

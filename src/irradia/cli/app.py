@@ -11,10 +11,10 @@ from typing import NoReturn
 import click
 
 from irradia import __version__
-from irradia.cli.output import reserve_stdout, write_json
+from irradia.cli.output import INTERRUPTED, reserve_stdout, write_json
 from irradia.core.errors import InputError, IrradiaError
 
-INTERRUPTED = 130  # what shells report for a program ended by Ctrl-C
+_INTERRUPTED = "stopped; files already finished are whole, run again to go on"
 
 # Name: module below irradia.cli, one line for the list. The module holds ``command``.
 COMMANDS: dict[str, tuple[str, str]] = {
@@ -22,6 +22,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "demo": ("demo", "Bake a scene of our own, with report."),
     "info": ("info", "What is in a scene and what the bake will do with it."),
     "bake": ("bake", "Bake a scene's lightmaps, with baked .glb and report."),
+    "merge": ("merge", "Join the shards of one bake."),
     "render": ("render", "Path-trace an image of a scene or of a baked result."),
     "compare": ("compare", "Metrics between two images or lightmaps."),
 }
@@ -73,7 +74,7 @@ def _run(arguments: Sequence[str], *, wants_json: bool) -> int:
     try:
         code = group.main(list(arguments), prog_name="irradia", standalone_mode=False)
     except click.Abort:
-        return _fail(wants_json, "stopped; files already finished are whole, run again to go on", INTERRUPTED)
+        return _fail(wants_json, _INTERRUPTED, INTERRUPTED)
     except click.ClickException as error:
         return _fail(wants_json, _usage(error), error.exit_code)
     except IrradiaError as error:
@@ -81,9 +82,19 @@ def _run(arguments: Sequence[str], *, wants_json: bool) -> int:
     except MemoryError:
         return _fail(wants_json, "not enough memory; a smaller --resolution needs less", InputError.exit_code)
     except Exception as error:  # noqa: BLE001 - the last line of defence: report it as our fault
+        if _comes_from_ctrl_c(error):
+            return _fail(wants_json, _INTERRUPTED, INTERRUPTED)
         traceback.print_exc(file=sys.stderr)
         return _fail(wants_json, f"a defect of Irradia, please report it: {error!r}", 1)
     return code if isinstance(code, int) else 0
+
+
+def _comes_from_ctrl_c(error: BaseException) -> bool:
+    """Dr.Jit wraps what is raised while it traces a loop."""
+    cause: BaseException | None = error
+    while cause is not None and not isinstance(cause, KeyboardInterrupt):
+        cause = cause.__cause__ or cause.__context__
+    return cause is not None
 
 
 def _usage(error: click.ClickException) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irradia.cli.bake_job import Baked, BakeJob
+from irradia.cli.bake_job import Baked, BakeJob, scene_hash
 from irradia.cli.memory import peak_memory_bytes
 from irradia.core import provenance
 from irradia.core.colour import automatic_exposure_ev, picture_srgb8
@@ -97,15 +97,6 @@ def _against_reference(baked: Baked) -> dict[str, Any] | None:
         **baked.view.comparison.to_json(),
         "relmse_noise_free": baked.view.relmse_noise_free,
     }
-
-
-def scene_hash(scene: Scene) -> str:
-    """SHA-256 over the document with all that it refers to."""
-    document = scene.document
-    if document is None:
-        return provenance.sha256_bytes(scene.name.encode())
-    text = json.dumps(document.json, sort_keys=True, separators=(",", ":")).encode()
-    return provenance.sha256_bytes(text, *document.buffers, *document.images)
 
 
 def _provenance(job: BakeJob, scene: Scene, wall_s: float) -> provenance.Provenance:

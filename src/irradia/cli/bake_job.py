@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import json
 import time
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from irradia.bake.lightmap import BakeOptions, LightmapResult
+from irradia import __version__
+from irradia.bake.lightmap import BakeOptions, LightmapBake, LightmapResult, Selection
+from irradia.bake.shards import Shard
+from irradia.bake.texels import TexelSet
 from irradia.cli.bake_views import View, ViewOptions
 from irradia.cli.lighting import LightOptions, light_scene
 from irradia.cli.staging import staged_folder
+from irradia.core import provenance
 from irradia.core.device import DeviceChoice
 from irradia.core.progress import Progress
 from irradia.scene.layout import LightmapLayout
@@ -31,6 +37,11 @@ class BakeJob:
         out: Folder for the results.
         views: The report's pictures; None leaves the report out.
         compatible: Writes instances out, for loaders that read neither them nor our extension.
+        resume: Goes on from the state that a stopped bake has left in ``out``.
+        checkpoint_s: How often that state is saved.
+        view_first: Camera whose texels are finished first, as ``--camera`` names it.
+        only: Names or patterns of the objects to bake.
+        shard: (i, n): the part of the samples that this machine traces.
     """
 
     scene: str
@@ -41,6 +52,11 @@ class BakeJob:
     bake: BakeOptions = field(default_factory=BakeOptions)
     views: ViewOptions | None = field(default_factory=ViewOptions)
     compatible: bool = False
+    resume: bool = False
+    checkpoint_s: float = 60.0
+    view_first: str | None = None
+    only: tuple[str, ...] = ()
+    shard: tuple[int, int] | None = None
     device: DeviceChoice = "auto"
     threads: int | None = None
 
@@ -49,7 +65,8 @@ class BakeJob:
         plain = asdict(self)
         plain["scene"] = Path(self.scene).name
         plain["light"]["env"] = self.light.env.name if self.light.env else None
-        del plain["out"]
+        for name in ("out", "resume", "checkpoint_s"):
+            del plain[name]
         return plain
 
 
@@ -60,6 +77,7 @@ class Baked:
     Attributes:
         bake_s: Wall time from opening the file to the finished pages.
         view: For the report, rendered after that.
+        complete: Whether the bake came to its end rather than being stopped.
     """
 
     scene: Scene
@@ -67,6 +85,7 @@ class Baked:
     result: LightmapResult
     bake_s: float
     view: View | None
+    complete: bool
 
 
 @dataclass(frozen=True)
@@ -76,14 +95,21 @@ class BakeSummary:
     Attributes:
         record: The content of ``bake.json``.
         files: Names of the files in the folder.
+        complete: See :class:`Baked`.
     """
 
     record: dict[str, Any]
     files: tuple[str, ...]
+    complete: bool
 
 
-def run_bake(job: BakeJob, progress: Progress) -> BakeSummary:
+def run_bake(job: BakeJob, progress: Progress, shards: Sequence[Shard] = ()) -> BakeSummary:
     """Bakes and writes everything to ``job.out``, which is whole afterwards or as it was before.
+
+    Args:
+        job: What to bake.
+        progress: Shows stages.
+        shards: What other machines have traced, in order; joined instead of tracing.
 
     Raises:
         InputError: Something in the file or among the options is wrong.
@@ -94,10 +120,10 @@ def run_bake(job: BakeJob, progress: Progress) -> BakeSummary:
     start = time.perf_counter()
     use_device(job.device, job.threads)
     with staged_folder(job.out, stale=PRODUCTS) as folder:
-        baked = _bake(job, progress)
+        baked = _bake(job, progress, shards)
         record = write_products(folder, job, baked, progress, start)
         files = tuple(sorted(path.name for path in folder.iterdir()))
-    return BakeSummary(record, files)
+    return BakeSummary(record, files, baked.complete)
 
 
 def open_scene(spec: str, load: LoadOptions, light: LightOptions, progress: Progress) -> Scene:
@@ -111,21 +137,88 @@ def open_scene(spec: str, load: LoadOptions, light: LightOptions, progress: Prog
     return scene
 
 
-def _bake(job: BakeJob, progress: Progress) -> Baked:
-    from irradia.bake.lightmap import bake_lightmap
+def run_shard(job: BakeJob, progress: Progress) -> Path:
+    """Traces ``job.shard`` and writes it to ``job.out``; returns the file.
+
+    Raises:
+        InputError: Something in the file or among the options is wrong.
+    """
+    from irradia.bake.shards import write_shard
+    from irradia.cli.bake_trace import trace_shard
+    from irradia.transport import use_device
+
+    use_device(job.device, job.threads)
+    scene, _, bake = _prepare(job, progress)
+    shard = trace_shard(bake, job, identity(job, scene, bake.texels), progress)
+    path = job.out / f"shard-{shard.number}-of-{shard.count}.npz"
+    with staged_folder(job.out) as folder:
+        write_shard(folder / path.name, shard)
+    return path
+
+
+def _prepare(job: BakeJob, progress: Progress) -> tuple[Scene, LightmapLayout, LightmapBake]:
+    from irradia.bake.lightmap import start_bake
     from irradia.scene.lightmap_uv import layout_lightmap
 
-    start = time.perf_counter()
     scene = open_scene(job.scene, job.load, job.light, progress)
     layout = layout_lightmap(scene, job.layout, progress)
     for note in layout.notes:
         progress.say(note)
-    result = bake_lightmap(scene, layout, job.bake, progress)
+    return scene, layout, start_bake(scene, layout, job.bake, progress, _selection(job, scene))
+
+
+def _bake(job: BakeJob, progress: Progress, shards: Sequence[Shard]) -> Baked:
+    from irradia.bake.shards import join
+    from irradia.cli.bake_trace import trace
+
+    start = time.perf_counter()
+    scene, layout, bake = _prepare(job, progress)
+    same = identity(job, scene, bake.texels)
+    complete = True
+    if shards:
+        join(bake.bake, shards, same)
+    else:
+        complete = trace(bake, job, same, progress)
+    result = bake.result(progress)
     bake_s = time.perf_counter() - start
-    if job.views is None:
-        return Baked(scene, layout, result, bake_s, None)
+    if job.views is None or not complete:
+        return Baked(scene, layout, result, bake_s, None, complete)
     from irradia.cli.bake_views import render_view
     from irradia.transport.render import BakedLight
 
     view = render_view(scene, BakedLight(layout, result.pages), job.views, progress)
-    return Baked(scene, layout, result, bake_s, view)
+    return Baked(scene, layout, result, bake_s, view, complete)
+
+
+def _selection(job: BakeJob, scene: Scene) -> Selection:
+    from irradia.scene.framing import camera_from_spec
+
+    view = None if job.view_first is None else camera_from_spec(scene, job.view_first)
+    return Selection(view=view, shard=job.shard)
+
+
+def identity(job: BakeJob, scene: Scene, texels: TexelSet) -> dict[str, Any]:
+    """What must be the same for a stopped bake to go on as if it had never stopped."""
+    config = job.config()
+    del config["views"], config["threads"], config["shard"], config["bake"]["time_s"]
+    return {
+        "scene": scene_hash(scene),
+        "environment": environment_hash(scene),
+        "texels": provenance.sha256_bytes(texels.pixel.tobytes()),
+        "version": __version__,
+        **{f"option {key}": value for key, value in config.items()},
+    }
+
+
+def scene_hash(scene: Scene) -> str:
+    """SHA-256 over the document with all that it refers to."""
+    document = scene.document
+    if document is None:
+        return provenance.sha256_bytes(scene.name.encode())
+    text = json.dumps(document.json, sort_keys=True, separators=(",", ":")).encode()
+    return provenance.sha256_bytes(text, *document.buffers, *document.images)
+
+
+def environment_hash(scene: Scene) -> str:
+    """SHA-256 of the light from outside, or an empty text without."""
+    return provenance.sha256_bytes(scene.environment.radiance.tobytes()) if scene.environment else ""

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 F = TypeVar("F", bound=Callable[..., None])
 
 MAX_SAMPLES = 1 << 20
+DEFAULT_SAMPLES = 64
 MIN_RESOLUTION_PX = 16
 MAX_RESOLUTION_PX = 16384
 MAX_SEED = (1 << 32) - 1
@@ -33,6 +34,22 @@ class Finite(click.FloatRange):
         return number
 
 
+class ShardPart(click.ParamType):
+    """``I/N``: the I-th of N parts."""
+
+    name = "I/N"
+
+    def convert(
+        self, value: str, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[int, int]:
+        """(I, N), or a usage error."""
+        number, slash, count = value.partition("/")
+        if not (slash and number.isdecimal() and count.isdecimal() and 1 <= int(number) <= int(count)):
+            self.fail(f"expected I/N with I from 1 to N, found {value!r}", param, ctx)
+        return int(number), int(count)
+
+
+SHARD = ShardPart()
 ANY = Finite()
 NOT_NEGATIVE = Finite(min=0.0)
 POSITIVE = Finite(min=0.0, min_open=True)
@@ -65,6 +82,37 @@ reference_spp_option = click.option(
     show_default=True,
     help="Samples per pixel of the report's reference.",
 )
+
+
+def budget_options(function: F) -> F:
+    """``--samples``, ``--time``, ``--noise``: when a bake is done, and where its rays go."""
+    return _apply(
+        function,
+        click.option(
+            "--samples",
+            type=click.IntRange(1, MAX_SAMPLES),
+            help=f"Gather rays per texel.  [default: {DEFAULT_SAMPLES}, without --time and --noise]",
+        ),
+        click.option("--time", "time_s", type=POSITIVE, metavar="S", help="Stop tracing after this long."),
+        click.option(
+            "--noise",
+            type=POSITIVE,
+            metavar="X",
+            help="Stop when 95 % of the texels have a relative standard error below X.",
+        ),
+        click.option("--adaptive", is_flag=True, help="Send rays where the noise is; --noise always does."),
+        click.option(
+            "--indirect-clamp",
+            type=POSITIVE,
+            metavar="X",
+            help="Cut what a ray may bring, against fireflies; the loss is reported.",
+        ),
+    )
+
+
+def sample_limit(samples: int | None, time_s: float | None, noise: float | None) -> int | None:
+    """The number of samples that was asked for, or that is meant where no limit was given at all."""
+    return DEFAULT_SAMPLES if samples is None and time_s is None and noise is None else samples
 
 
 def lighting_options(function: F) -> F:

@@ -11,6 +11,8 @@ from typing import IO, Any
 
 import click
 
+INTERRUPTED = 130  # what shells report for a program ended by Ctrl-C
+
 _reserved: list[IO[bytes]] = []
 
 

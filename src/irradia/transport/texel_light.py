@@ -1,13 +1,13 @@
 """Light arriving at texels: the kernels of the lightmap bake.
 
-One lane is one texel. A pass draws a few rays from each of the texel's sub-samples in turn, in a
-loop inside the kernel, and adds what they bring to that texel's sums: no scatter, so the same bits
-come out for any number of threads, and no value returns to the host.
+A pass gives every texel of a list some gather rays and some next-event samples, in a loop inside one
+kernel. One lane serves one texel, or several lanes share one where the list is too short to fill the
+device; their parts are then added in fixed order. No scatter adds floats, so the same bits come out
+for any number of threads, and no value returns to the host.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeVar
@@ -15,21 +15,31 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from irradia.transport.backend import dr, mi
-from irradia.transport.geometry import Hit
+from irradia.scene.types import Camera
+from irradia.transport.backend import device, dr, mi
+from irradia.transport.channels import MAP, Channels
+from irradia.transport.frames import Frame, TangentFrames
+from irradia.transport.geometry import Hit, SurfacePoint
 from irradia.transport.hidden import drop_hidden
-from irradia.transport.path import LightCache, direct, start, trace
-from irradia.transport.sampling import Sampler, cosine_hemisphere, hash_u32, to_world
+from irradia.transport.normal_maps import NormalMaps
+from irradia.transport.path import LightCache, direct, draw_ray, start, trace
+from irradia.transport.sampling import Sampler, hash_u32
+from irradia.transport.subsample_set import SubsampleSet
 from irradia.transport.subsamples import Subsamples
+from irradia.transport.texel_sums import Lanes, TexelSums
+from irradia.transport.view import seen_texels
 from irradia.transport.world import TriangleRecord, World
 
 _RAYS_PER_SUBSAMPLE = 8
+_LANES = {"cpu": 1 << 13, "cuda": 1 << 21}
 T = TypeVar("T")
 TexelColour = mi.Color3f  # one colour a texel
 
 
 class RadiosityCache:
     """Radiance leaving each texel of the map, ρ · E/π, read by the nearest texel."""
+
+    everywhere = False
 
     def __init__(self, radiosity: mi.Float, width_px: int) -> None:
         self._radiosity = radiosity
@@ -42,22 +52,32 @@ class RadiosityCache:
         return mi.Color3f(value.x, value.y, value.z)
 
 
-@dataclass
-class TexelSums:
-    """Running sums over rays; E/π is their quotient.
+@dataclass(frozen=True)
+class Draw:
+    """Samples for each texel of a pass.
 
     Attributes:
-        light: (N) sum of weighted radiance.
-        count: Rays drawn per texel so far.
+        rays: Gather rays; a multiple of the lanes a texel.
+        direct: Next-event samples; likewise.
+        seed, direct_seed: Streams of random numbers, the same for all passes of an epoch and a bake.
+        first_subsample: Where an epoch begins among the sub-samples.
     """
 
-    light: mi.Color3f
-    count: int
+    rays: int
+    direct: int
+    seed: int
+    direct_seed: int
+    first_subsample: int = 0
 
-    @property
-    def mean(self) -> mi.Color3f:
-        """E/π."""
-        return self.light / max(self.count, 1)
+
+class Darkness:
+    """No light leaves any surface: what rays meet is sources alone."""
+
+    everywhere = True
+
+    def outgoing(self, world: World, hit: Hit, record: TriangleRecord, active: mi.Bool) -> mi.Color3f:
+        """See :class:`LightCache`."""
+        return mi.Color3f(0.0)
 
 
 class TexelLight:
@@ -67,33 +87,59 @@ class TexelLight:
         world: The scene.
         pixel: (N,) flat pixel of each texel: seeds its random numbers, so that they don't depend
             on which other texels there are.
-        triangle: (N, S) triangle under each sub-sample.
-        barycentric: (N, S, 2).
-        nee_ratio: Next-event samples per gather ray that the whole bake will have drawn.
+        samples: Where each texel is sampled.
+        nee_ratio: Next-event samples per gather ray, which multiple importance sampling goes by.
+        channels: What is kept of each sample; by default E/π alone.
+        normal_maps: Bends the normals that light is received on.
+        frames: Tangents, where channels ask for them.
     """
 
     def __init__(
         self,
         world: World,
         pixel: NDArray[np.uint32],
-        triangle: NDArray[np.uint32],
-        barycentric: NDArray[np.float32],
+        samples: SubsampleSet,
         nee_ratio: float,
+        channels: Channels | None = None,
+        *,
+        normal_maps: NormalMaps | None = None,
+        frames: TangentFrames | None = None,
     ) -> None:
         self.world = world
         self._n_pages = int(pixel[-1]) // (world.page_width * world.page_height) + 1 if len(pixel) else 1
         self.n_texels = len(pixel)
-        self._subsamples = Subsamples(triangle, barycentric)
+        self.nee_ratio = nee_ratio
+        self.channels = channels or Channels()
+        self._normal_maps, self._frames = normal_maps, frames
+        self._subsamples = Subsamples(world, pixel, samples)
         self._pixel = mi.UInt32(pixel)
-        self._nee_ratio = nee_ratio
+        self._every = dr.arange(mi.UInt32, self.n_texels)
+        dr.eval(self._every)
 
-    def warm_up(self, *, cached: bool) -> None:
+    def lanes(self, texels: NDArray[np.uint32], per_texel: int = 1) -> Lanes:
+        """Lanes that serve a list of texels, given in ascending order."""
+        if 2 * len(texels) < self.n_texels or per_texel > 1:
+            return Lanes(mi.UInt32(texels), len(texels), per_texel)
+        served = np.zeros(self.n_texels, np.uint32)
+        served[texels] = 1
+        return Lanes(self._every, len(texels), served=mi.UInt32(served))
+
+    @property
+    def wanted_lanes(self) -> int:
+        """How many lanes keep the device busy."""
+        return _LANES[device.kind]
+
+    def warm_up(self, texels: NDArray[np.uint32], cache: LightCache | None) -> None:
         """Compiles the kernels by running them with no rays."""
-        sums = self.empty_sums()
-        cache = self.cache(sums.light, sums.light) if cached else None
-        self.gather(sums, 0, 0, cache, first_subsample=0)
-        self.direct(sums, 0, 0)
+        self.add_rays(self.empty_sums(), self.lanes(texels), Draw(0, 0, 0, 0), cache)
         self.wait()
+
+    def cache_of_nothing(self, cached: bool, *, one_bounce: bool) -> LightCache | None:
+        """What rays read before anything is known, or where nothing is to be read."""
+        if one_bounce:
+            return Darkness()
+        nothing = dr.zeros(mi.Color3f, self.n_texels)
+        return self.cache(nothing, nothing) if cached else None
 
     def wait(self) -> None:
         """Returns when all passes so far are done, so that progress tells the truth."""
@@ -101,14 +147,15 @@ class TexelLight:
 
     def empty_sums(self) -> TexelSums:
         """No rays yet."""
-        return TexelSums(dr.zeros(mi.Color3f, self.n_texels), 0)
+        return TexelSums.empty(self.n_texels, self.channels.count)
 
     def drop_hidden_subsamples(self) -> NDArray[np.float32]:
         """See :func:`irradia.transport.hidden.drop_hidden`."""
         return drop_hidden(self.world, self._subsamples)
 
-    def _texel_seed(self, seed: int) -> mi.UInt32:
-        return hash_u32(self._pixel ^ hash_u32(dr.opaque(mi.UInt32, seed)))
+    def seen_from(self, camera: Camera) -> NDArray[np.bool_]:
+        """See :func:`irradia.transport.view.seen_texels`."""
+        return seen_texels(self.world, self._subsamples, camera)
 
     def reflectance(self) -> mi.Color3f:
         """Mean ρ over each texel's footprint, of the light that stops there."""
@@ -122,67 +169,109 @@ class TexelLight:
             dr.eval(rho, stops)
         return rho / dr.maximum(stops, 1e-6)
 
-    def gather(
-        self, sums: TexelSums, n_rays: int, seed: int, cache: LightCache | None, *, first_subsample: int
+    def add_rays(
+        self,
+        sums: TexelSums,
+        lanes: Lanes,
+        draw: Draw,
+        cache: LightCache | None,
+        *,
+        after: TexelSums | None = None,
     ) -> TexelSums:
-        """Adds ``n_rays`` cosine-distributed rays to every texel, moving on by a sub-sample every eight."""
-        first, last = dr.opaque(mi.UInt32, sums.count), dr.opaque(mi.UInt32, sums.count + n_rays)
-        shift = dr.opaque(mi.UInt32, first_subsample % self._subsamples.count)
-        light = self._gather_loop(self._texel_seed(seed), first, last, shift, cache)
-        result = TexelSums(sums.light + light, sums.count + n_rays)
-        dr.eval(result.light)
-        return result
+        """One pass over a list of texels.
+
+        Args:
+            sums: What is added to.
+            lanes: The texels.
+            draw: How many samples each gets.
+            cache: Light of mapped surfaces, or None to trace whole paths.
+            after: Earlier samples of the same sequences. Together with those in ``sums`` they say
+                where each texel goes on.
+        """
+        texel, pixel, part = lanes.read(self._every), lanes.read(self._pixel), lanes.part()
+        earlier = sums if after is None else after.plus(sums)
+
+        rays = lanes.count(draw.rays)
+        first = lanes.read(earlier.rays) + part * rays
+        shift = dr.opaque(mi.UInt32, draw.first_subsample % self._subsamples.count)
+        gathered = self._gather(texel, _stream(pixel, draw.seed), first, first + rays, shift, cache)
+
+        arrived = self.channels.zeros()
+        if self.world.lights.any:
+            samples = lanes.count(draw.direct)
+            first = lanes.read(earlier.samples) + part * samples
+            arrived = self._direct(texel, _stream(pixel, draw.direct_seed), first, first + samples)
+        return sums.add(lanes, gathered, arrived, draw.rays, draw.direct)
 
     @dr.syntax
-    def _gather_loop(
+    def _gather(
         self,
+        texel: mi.UInt32,
         texel_seed: mi.UInt32,
         first: mi.UInt32,
         last: mi.UInt32,
         shift: mi.UInt32,
         cache: LightCache | None,
-    ) -> mi.Color3f:
-        """Rays ``first`` to ``last``: from each sub-sample in turn, eight."""
-        texel = dr.arange(mi.UInt32, self.n_texels)
-        light = mi.Color3f(0.0)
-        ratio = dr.opaque(mi.Float, self._nee_ratio)
+    ) -> list[mi.Color3f]:
+        """Sums over rays ``first`` to ``last``: eight from each sub-sample in turn."""
+        sums = self.channels.zeros()
+        hemisphere = self.channels.hemisphere
+        ratio = dr.opaque(mi.Float, self.nee_ratio)
         k = mi.UInt32(first)
         while k < last:
             block = k // _RAYS_PER_SUBSAMPLE
-            point = self._subsamples.point(self.world, texel, (block + shift) % self._subsamples.count)
+            point, frame = self._receiver(texel, (block + shift) % self._subsamples.count)
             block_end = dr.minimum(last, (block + 1) * _RAYS_PER_SUBSAMPLE)
             while k < block_end:
                 sampler = Sampler(mi.UInt32(k), mi.UInt32(texel_seed))
-                local = cosine_hemisphere(sampler.next_2d())
-                direction = to_world(point.ns, local)
-                above = (dr.dot(direction, point.ng) > 0.0) & (local.z > 0.0)
-                ray = start(point.origin, direction, local.z * (1.0 / math.pi), ratio, sampler, above)
-                light += trace(self.world, ray, cache).radiance
+                leaving = draw_ray(point, sampler, hemisphere)
+                ray = start(
+                    leaving.origin, leaving.direction, leaving.pdf, ratio, sampler, leaving.above, point.lod
+                )
+                light = trace(self.world, ray, cache).radiance * leaving.weight
+                sums = _plus(sums, self.channels.of_ray(light, leaving.arrives_from, frame))
                 k += 1
-        return light
-
-    def direct(self, sums: TexelSums, n_samples: int, seed: int) -> TexelSums:
-        """Adds next-event samples to every texel, sub-samples taken in turn."""
-        if not self.world.lights.any:
-            return TexelSums(sums.light, sums.count + n_samples)
-        first, last = dr.opaque(mi.UInt32, sums.count), dr.opaque(mi.UInt32, sums.count + n_samples)
-        ratio = dr.opaque(mi.Float, self._nee_ratio)
-        light = self._direct_loop(self._texel_seed(seed), first, last, ratio)
-        result = TexelSums(sums.light + light, sums.count + n_samples)
-        dr.eval(result.light)
-        return result
+        return sums
 
     @dr.syntax
-    def _direct_loop(self, texel_seed, first, last, ratio):
-        texel = dr.arange(mi.UInt32, self.n_texels)
-        light = mi.Color3f(0.0)
+    def _direct(
+        self, texel: mi.UInt32, texel_seed: mi.UInt32, first: mi.UInt32, last: mi.UInt32
+    ) -> list[mi.Color3f]:
+        """Sums over next-event samples ``first`` to ``last``, sub-samples taken in turn."""
+        sums = self.channels.zeros()
+        hemisphere = self.channels.hemisphere
+        ratio = dr.opaque(mi.Float, self.nee_ratio)
         k = mi.UInt32(first)
         while k < last:
-            point = self._subsamples.point(self.world, texel, k % self._subsamples.count)
+            point, frame = self._receiver(texel, k % self._subsamples.count)
             sampler = Sampler(mi.UInt32(k), mi.UInt32(texel_seed))
-            light += direct(self.world, point, sampler, ratio, mi.Bool(True)).light
+            arrival = direct(self.world, point, sampler, ratio, mi.Bool(True), hemisphere)
+            sums = _plus(sums, self.channels.of_arrival(arrival, frame))
             k += 1
-        return light
+        return sums
+
+    def _receiver(self, texel: mi.UInt32, subsample: mi.UInt32) -> tuple[SurfacePoint, Frame]:
+        """The place that light is gathered at, bent by its normal map where those count."""
+        active = mi.Bool(True)
+        if self._normal_maps is None and self._frames is None:
+            point = self._subsamples.point(self.world, texel, subsample)
+            return point, Frame.around(point.ns)
+        triangle, bary = self._subsamples.fetch(texel, subsample)
+        point = self._subsamples.point(self.world, texel, subsample)
+        if self._normal_maps is not None:
+            point = self._normal_maps.apply(self.world, point, triangle, bary, active)
+        if self._frames is None:
+            return point, Frame.around(point.ns)
+        return point, self._frames.at(triangle, bary, point.ns, active)
+
+    def incoming(self, *parts: TexelSums) -> mi.Color3f:
+        """E/π of independent parts together, as the next epoch's cache needs it."""
+        result = mi.Color3f(0.0)
+        for sums in parts:
+            result = result + sums.mean(MAP)
+            if self.channels.live:
+                result = result + sums.mean(MAP + 1)
+        return result
 
     def cache(
         self, irradiance_over_pi: mi.Color3f, reflectance: mi.Color3f, scale: float = 1.0
@@ -211,3 +300,12 @@ class TexelLight:
             result = run()
             dr.sync_thread()
             return result, sum(entry["type"] == dr.KernelType.JIT for entry in dr.kernel_history())
+
+
+def _plus(sums: list[mi.Color3f], more: list[mi.Color3f]) -> list[mi.Color3f]:
+    return [a + b for a, b in zip(sums, more, strict=True)]
+
+
+def _stream(pixel: mi.UInt32, seed: int) -> mi.UInt32:
+    """A texel's own scramble."""
+    return hash_u32(pixel ^ hash_u32(dr.opaque(mi.UInt32, seed)))
