@@ -19,8 +19,9 @@ from typing import Protocol
 
 from irradia.transport.backend import dr, mi
 from irradia.transport.geometry import Hit, SurfacePoint
+from irradia.transport.hemispheres import COSINE, Hemisphere
 from irradia.transport.materials import DOUBLE_SIDED, EMISSIVE, FILTERS, TRANSLUCENT, UNLIT
-from irradia.transport.sampling import Sampler, cosine_hemisphere, to_world
+from irradia.transport.sampling import Sampler, to_world
 from irradia.transport.sides import mirrored_to_front, pick_side
 from irradia.transport.world import HAS_TEXEL, TriangleRecord, World
 
@@ -143,7 +144,7 @@ def _advance(world: World, ray: Segment, cache: LightCache | None, cull_backs: b
     if cache is None:
         return _meet(world, ray, hit, record, back, met, cache, cull_backs)
     plain = met & ((record.flags & (FILTERS | EMISSIVE | UNLIT)) == 0)
-    known = plain & ~back & ((record.flags & HAS_TEXEL) != 0)
+    known = plain & ~back & _answers(cache, record)
     ray.radiance += dr.select(known, ray.throughput * cache.outgoing(world, hit, record, known), 0.0)
     special = met & ~known
     if not cull_backs:
@@ -198,10 +199,14 @@ def _meet(
     ray.radiance += dr.select(stops, ray.throughput * emitted * weight, 0.0)
 
     # ---- an opaque back reflects nothing; a mapped front may know its light ----
-    dark = back & one_sided & ((record.flags & TRANSLUCENT) == 0)
+    dark = back & one_sided
+    if world.translucent:
+        dark &= (record.flags & TRANSLUCENT) == 0
     ends = stops & (dark | ((record.flags & UNLIT) != 0))
     if cache is not None:
-        known = stops & ~ends & ~back & ((record.flags & HAS_TEXEL) != 0)
+        known = stops & ~ends & _answers(cache, record)
+        if not cache.everywhere:
+            known &= ~back
         ray.radiance += dr.select(known, ray.throughput * cache.outgoing(world, hit, record, known), 0.0)
         ends |= known
 
@@ -214,6 +219,11 @@ def _meet(
     ray.segments += 1
     ray.active = (ray.active | passes) & (ray.segments < _MAX_SEGMENTS)
     return ray
+
+
+def _answers(cache: LightCache, record: TriangleRecord) -> mi.Bool:
+    """Whether the cache knows what leaves a surface's front."""
+    return mi.Bool(True) if cache.everywhere else (record.flags & HAS_TEXEL) != 0
 
 
 def _ray_weight(ray: Segment, light_pdf: mi.Float) -> mi.Float:
@@ -253,13 +263,14 @@ def _bounce(
 
 @dataclass
 class LeavingRay:
-    """A cosine-distributed ray from a surface point.
+    """A ray from a surface point, by which E/π is sampled.
 
     Attributes:
         origin, direction: The ray.
         pdf: Solid-angle density of its direction.
         arrives_from: The direction above the surface that its light counts as coming from.
-        weight: What its radiance is multiplied by: 1, but for surfaces that light comes through.
+        weight: What its radiance is multiplied by: 1 for cosine-distributed rays, but for surfaces
+            that light comes through.
         above: Whether the ray leaves the surface at all.
     """
 
@@ -271,17 +282,20 @@ class LeavingRay:
     above: mi.Bool
 
 
-def draw_ray(point: SurfacePoint, sampler: Sampler) -> LeavingRay:
+def draw_ray(point: SurfacePoint, sampler: Sampler, hemisphere: Hemisphere = COSINE) -> LeavingRay:
     """Draws a ray from the front, or from behind where light comes through diffusely."""
     chosen, weight = point, mi.Color3f(1.0)
     if point.sides is not None:
         side = pick_side(point, point.sides, sampler)
         chosen, weight = side.point, side.weight
-    local = cosine_hemisphere(sampler.next_2d())
+    local = hemisphere.draw(sampler.next_2d())
+    pdf = hemisphere.density(local.z)
+    if hemisphere is not COSINE:
+        weight = weight * (local.z * (1.0 / math.pi) / pdf)
     direction = to_world(chosen.ns, local)
     above = (dr.dot(direction, chosen.ng) > 0.0) & (local.z > 0.0)
     arrives_from = direction if point.sides is None else mirrored_to_front(direction, point.ns)
-    return LeavingRay(chosen.origin, direction, local.z * (1.0 / math.pi), arrives_from, weight, above)
+    return LeavingRay(chosen.origin, direction, pdf, arrives_from, weight, above)
 
 
 @dataclass
@@ -300,15 +314,20 @@ class Arrival:
 
 
 def direct(
-    world: World, point: SurfacePoint, sampler: Sampler, nee_ratio: mi.Float, active: mi.Bool
+    world: World,
+    point: SurfacePoint,
+    sampler: Sampler,
+    nee_ratio: mi.Float,
+    active: mi.Bool,
+    hemisphere: Hemisphere = COSINE,
 ) -> Arrival:
-    """One next-event sample of E/π at a surface point, MIS-weighted against cosine-drawn rays."""
+    """One next-event sample of E/π at a surface point, MIS-weighted against rays of a distribution."""
     lights = world.lights
     if not lights.any:
         return Arrival(mi.Color3f(0.0), mi.Vector3f(0.0, 0.0, 1.0), mi.Bool(False))
     if point.sides is not None:
         side = pick_side(point, point.sides, sampler)
-        arrival = direct(world, side.point, sampler, nee_ratio, active)
+        arrival = direct(world, side.point, sampler, nee_ratio, active, hemisphere)
         direction = mirrored_to_front(arrival.direction, point.ns)
         return Arrival(arrival.light * side.weight, direction, arrival.live)
     u, pick = sampler.next_2d(), sampler.next_2d().x
@@ -316,9 +335,9 @@ def direct(
     cosine = dr.dot(point.ns, sample.direction)
     above = active & (cosine > 0.0) & (dr.dot(point.ng, sample.direction) > 0.0)
     above &= dr.max(sample.weight) > 0.0
-    ray_pdf = cosine * (1.0 / math.pi)
+    ray_pdf = hemisphere.density(cosine)
     weighed = nee_ratio * sample.pdf
     weight = dr.select(sample.pdf > 0.0, weighed / dr.maximum(weighed + ray_pdf, 1e-30), 1.0)
     arriving = world.transmittance(point.origin, sample.direction, sample.distance, above, point.lod)
-    light = dr.select(above, sample.weight * arriving * (ray_pdf * weight), 0.0)
+    light = dr.select(above, sample.weight * arriving * (cosine * (1.0 / math.pi) * weight), 0.0)
     return Arrival(light, sample.direction, lights.is_live(sample.punctual, above))

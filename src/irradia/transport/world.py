@@ -104,6 +104,12 @@ class World:
         flags = dr.reinterpret_array(mi.UInt32, c.w)
         return TriangleRecord(mi.Vector3f(c.x, c.y, c.z), flags, pixel, dr.reinterpret_array(mi.UInt32, a.z))
 
+    def on_page(self, triangle: mi.UInt32, active: mi.Bool) -> tuple[mi.Point2f, mi.Vector2f, mi.Vector2f]:
+        """Where a triangle lies on its page, in pixels: its first corner, and the edges from there."""
+        a = dr.gather(mi.Vector4f, self._records, 3 * triangle, active)
+        b = dr.gather(mi.Vector4f, self._records, 3 * triangle + 1, active)
+        return mi.Point2f(a.x, a.y), mi.Vector2f(b.x, b.y), mi.Vector2f(b.z, b.w)
+
     def page_area_px(self, triangle: mi.UInt32, active: mi.Bool) -> mi.Float:
         """The triangle's area on its lightmap page; 0 where it has no place there."""
         edges = dr.gather(mi.Vector4f, self._records, 3 * triangle + 1, active)
