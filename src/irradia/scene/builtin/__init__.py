@@ -41,6 +41,7 @@ _SCENES: dict[str, tuple[str, tuple]] = {
     "foliage": ("foliage", ()),
     "lights": ("lights", ()),
     "lights-10": ("lights", ("lights-10", 10)),
+    "terrain": ("terrain", ()),
     "objects": ("objects", ("objects", False)),
     "objects-merged": ("objects", ("objects-merged", True)),
 }

@@ -8,13 +8,13 @@ import numpy as np
 
 from irradia.core.progress import Progress
 from irradia.scene.layout import LightmapLayout, Unwrap
+from irradia.scene.lightmap_uv.charts import triangle_areas
 from irradia.scene.lightmap_uv.density import Plan, make_plan
 from irradia.scene.lightmap_uv.options import LayoutOptions
 from irradia.scene.lightmap_uv.pack import Placement
 from irradia.scene.lightmap_uv.pieces import Piece
 from irradia.scene.lightmap_uv.receivers import Receiver, find_receivers
 from irradia.scene.lightmap_uv.shared import shared_layout, shares_one_page
-from irradia.scene.lightmap_uv.unwrap import triangle_areas
 from irradia.scene.types import Scene
 
 

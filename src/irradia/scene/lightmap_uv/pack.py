@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.scene.lightmap_uv.atlas import new_atlas
-from irradia.scene.lightmap_uv.unwrap import triangle_areas
+from irradia.scene.lightmap_uv.charts import triangle_areas
 from irradia.scene.types import F32, F64, U32
 
 # Islands that are narrow, or nearly rectangles, are packed as the rectangles that hold them: these lie

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from irradia.scene.lightmap_uv.charts import triangle_areas
 from irradia.scene.lightmap_uv.pack import INSET_PX, Islands, Placement, pack, rectangle
 from irradia.scene.lightmap_uv.receivers import Receiver
-from irradia.scene.lightmap_uv.unwrap import triangle_areas
 from irradia.scene.types import F32, F64
 
 # The free space between charts shrinks with the rectangle. Instances that are smaller than the median

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.core.progress import Progress
-from irradia.scene.lightmap_uv.unwrap import Charts, triangle_areas, unwrap
+from irradia.scene.lightmap_uv.charts import Charts, triangle_areas
+from irradia.scene.lightmap_uv.unwrap import unwrap
 from irradia.scene.lightmap_uv.validate import file_charts
 from irradia.scene.types import F64, Instance, Primitive, Scene
 

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from irradia.scene.layout import LightmapLayout, Unwrap
+from irradia.scene.lightmap_uv.charts import triangle_areas
 from irradia.scene.lightmap_uv.options import LayoutOptions
 from irradia.scene.lightmap_uv.receivers import Receiver
-from irradia.scene.lightmap_uv.unwrap import triangle_areas
 from irradia.scene.lightmap_uv.validate import MAX_OVERLAP_SHARE, overlap_share
 from irradia.scene.types import Scene
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from irradia.scene.lightmap_uv.unwrap import Charts, triangle_areas
+from irradia.scene.lightmap_uv.charts import Charts, triangle_areas
 from irradia.scene.types import F32, U32, Primitive
 
 _SLACK = 1e-4  # exporters overshoot the unit square by rounding
