@@ -24,14 +24,16 @@ def irradia(*arguments: str | Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("scene", "options"),
+    ("scene", "resolution", "options"),
     [
-        ("builtin:cornell", []),
-        ("builtin:blocks", ["--compatible"]),
+        ("builtin:cornell", 256, []),
+        # Shade under a sun of 100 klx: 8 bits have few codes for it.
+        ("builtin:atrium", 512, []),
+        ("builtin:blocks", 256, ["--compatible"]),
     ],
 )
 def test_three_js_is_as_bright_as_our_own_picture(
-    draw_in_three_js, tmp_path: Path, scene: str, options: list[str]
+    draw_in_three_js, tmp_path: Path, scene: str, resolution: int, options: list[str]
 ) -> None:
     irradia(
         "bake",
@@ -39,7 +41,7 @@ def test_three_js_is_as_bright_as_our_own_picture(
         "-o",
         tmp_path / "out",
         "--resolution",
-        "256",
+        f"{resolution}",
         "--samples",
         "16",
         "--no-report",

@@ -4,17 +4,19 @@ Hubs defined the extension when three.js still multiplied lightMap by π inside 
 ``texel · intensity`` is what a white surface shows: E/π. It is so written here: ``intensity`` is the
 scale alone, and a plugin for three.js r155 or newer, whose lightMap is E, sets
 ``lightMapIntensity = intensity · π``.
+
+Under a sun of 100 klx shade has few of the 256 codes. So codes are dithered in linear light, the
+space in which loaders filter: the mean over a few texels is right, however dark they are.
 """
 
 from __future__ import annotations
 
 import copy
-import math
 
 import numpy as np
 from numpy.typing import NDArray
 
-from irradia.core.colour import preview_srgb8
+from irradia.core.dither import dithered_srgb8
 from irradia.export.primitives import MOZ_LIGHTMAP
 from irradia.export.slots import Slots
 from irradia.formats.png import encode_png
@@ -130,9 +132,10 @@ class MozLightmaps:
 
 def _coded(page: NDArray[np.float32], scale: float) -> NDArray[np.uint8]:
     """The sRGB codes of a page over its scale, a band of rows at a time to stay small."""
-    exposure = -math.log2(scale)
-    bands = range(0, len(page), _BAND_ROWS)
-    return np.concatenate([preview_srgb8(page[start : start + _BAND_ROWS], exposure) for start in bands])
+    bands = [slice(start, start + _BAND_ROWS) for start in range(0, len(page), _BAND_ROWS)]
+    return np.concatenate(
+        [dithered_srgb8(page[band] / np.float32(scale), first_row=band.start) for band in bands]
+    )
 
 
 def _append(json: Json, key: str, entry: Json) -> int:
