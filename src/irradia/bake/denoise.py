@@ -9,7 +9,6 @@ margins: little for walls, twice to three times a whole page's for scans in thou
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,55 +49,45 @@ def denoise(values: F32, texels: TexelSet, progress: Progress, *, n_threads: int
     lit = values.max(axis=1, initial=0.0) > 0
     if not lit.any():
         return result
-    scale = _input_scale(values[lit])
-    charts = [chart for chart in _charts(texels) if lit[chart.members].any()]
-    with _Filter(scale, n_threads) as network:
-        total = float(sum(chart.n_canvas_texels for chart in charts))
+    charts = [members for members in _charts(texels) if lit[members].any()]
+    with _Filter(_input_scale(values[lit]), n_threads) as network:
+        total = float(sum(len(members) for members in charts))
         with progress.stage("denoise", total=total, unit="texel") as stage:
-            for chart in charts:
-                result[chart.members] = _denoise_chart(network, values[chart.members], chart)
-                stage.advance(chart.n_canvas_texels)
+            for members in charts:
+                result[members] = _denoise_chart(network, values[members], _Chart.of(members, texels))
+                stage.advance(len(members))
     return result
+
+
+def _charts(texels: TexelSet) -> list[NDArray[np.int64]]:
+    """Indices of each chart's texels, in ascending order of charts."""
+    order = np.argsort(texels.chart, kind="stable")
+    chart = texels.chart[order]
+    return np.split(order, np.flatnonzero(chart[1:] != chart[:-1]) + 1)
 
 
 @dataclass(frozen=True)
 class _Chart:
-    """A chart's texels and where they lie on its canvas.
+    """Where a chart's texels lie on its canvas.
 
     Attributes:
-        members: (M,) indices into the texel list.
         y, x: (M,) position on the canvas.
         shape: (height, width) of the canvas, margins included.
         weight: (M,) coverage.
     """
 
-    members: NDArray[np.int64]
     y: NDArray[np.int64]
     x: NDArray[np.int64]
     shape: tuple[int, int]
     weight: F32
 
-    @property
-    def n_canvas_texels(self) -> int:
-        return self.shape[0] * self.shape[1]
-
-
-def _charts(texels: TexelSet) -> Iterator[_Chart]:
-    """All charts in ascending order."""
-    order = np.argsort(texels.chart, kind="stable")
-    y, x = np.divmod(texels.pixel.astype(np.int64) % (texels.height_px * texels.width_px), texels.width_px)
-    first = np.flatnonzero(np.diff(texels.chart[order], prepend=-1))
-    for members in np.split(order, first[1:]):
-        own_y, own_x = y[members], x[members]
-        own_y, own_x = own_y - own_y.min(), own_x - own_x.min()
-        height, width = int(own_y.max()) + 1, int(own_x.max()) + 1
-        yield _Chart(
-            members=members,
-            y=own_y + _MARGIN,
-            x=own_x + _MARGIN,
-            shape=(height + 2 * _MARGIN, width + 2 * _MARGIN),
-            weight=texels.coverage[members],
-        )
+    @classmethod
+    def of(cls, members: NDArray[np.int64], texels: TexelSet) -> _Chart:
+        """Lays the texels (M,) of one chart, all on one page, on a canvas."""
+        y, x = np.divmod(texels.pixel[members].astype(np.int64), texels.width_px)
+        y, x = y - y.min() + _MARGIN, x - x.min() + _MARGIN
+        shape = int(y.max()) + 1 + _MARGIN, int(x.max()) + 1 + _MARGIN
+        return cls(y, x, shape, texels.coverage[members])
 
 
 def _denoise_chart(network: _Filter, values: F32, chart: _Chart) -> F32:
@@ -122,7 +111,7 @@ def _canvas(values: F32, chart: _Chart) -> tuple[F32, NDArray[np.bool_]]:
     inside = np.zeros(chart.shape, np.bool_)
     canvas[chart.y, chart.x] = values
     inside[chart.y, chart.x] = True
-    _, nearest = distance_transform_edt(~inside, return_indices=True)  # pyright: ignore[reportGeneralTypeIssues]
+    nearest = distance_transform_edt(~inside, return_distances=False, return_indices=True)
     y, x = np.nonzero(~inside)
     near_y, near_x = nearest[0][y, x], nearest[1][y, x]
     mirror_y = np.clip(2 * near_y - y, 0, chart.shape[0] - 1)

@@ -2,35 +2,44 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
 from irradia.bake.texels import TexelSet
-from irradia.scene.types import F32
+from irradia.scene.types import F32, U32
 
-_GUTTER_PX = 4  # rings round each chart that take its own colour before the rest of the page is smoothed
+GUTTER_PX = 4  # rings round each chart that take its own colour before the rest of the page is smoothed
 
 
-def fill_invalid(values: F32, valid: NDArray[np.bool_], texels: TexelSet) -> F32:
+def fill_invalid(values: F32, valid: NDArray[np.bool_], texels: TexelSet, region: U32 | None = None) -> F32:
     """Gives invalid texels the light of the nearest valid ones on their chart, ring by ring.
 
-    Charts without a valid texel lie inside something and become black.
+    Where rings of two regions meet, each keeps to its side. Charts without a valid texel lie inside
+    something and become black.
 
     Args:
-        values: (N, 3).
+        values: (N, C).
         valid: (N,) whether a texel's value counts.
         texels: Where they lie.
+        region: (N,) of valid texels, finer than charts; a chart is one region by default.
     """
     if valid.all():
         return values
-    from irradia.bake.dilate_kernels import KNOWN, NEVER, WANTED, grow
+    from irradia.bake.dilate_kernels import fill_rings
 
-    pages = texels.to_pages(np.where(valid[:, None], values, np.float32(0)))
-    state = texels.to_pages(np.where(valid, KNOWN, WANTED).astype(np.uint8), fill=NEVER)
-    chart = texels.to_pages(texels.chart.astype(np.int64), fill=-1)
-    for page in range(texels.n_pages):
-        grow(pages[page], state[page], chart[page], -1)
-    return pages.reshape(-1, 3)[texels.pixel]
+    region = texels.chart if region is None else region
+    known = np.where(valid, region.astype(np.int64), -1)
+    filled = np.where(valid[:, None], values, np.float32(0.0))
+    for page, own in _pages(texels):
+        pixel = texels.pixel[own].astype(np.int64) - page * texels.height_px * texels.width_px
+        if not valid[own].all():
+            texel_at = np.full(texels.height_px * texels.width_px, -1, np.int32)
+            texel_at[pixel] = np.arange(len(pixel), dtype=np.int32)
+            grid = texel_at.reshape(texels.height_px, texels.width_px)
+            fill_rings(filled[own], known[own], texels.chart[own], pixel, grid)
+    return filled
 
 
 def dilate(values: F32, texels: TexelSet) -> F32:
@@ -40,52 +49,55 @@ def dilate(values: F32, texels: TexelSet) -> F32:
     each page is filled smoothly from all its charts (push-pull), so that coarse mip levels hold no black.
 
     Args:
-        values: (N, 3) of the covered texels.
+        values: (N, C) of the covered texels.
         texels: Where they lie.
 
     Returns:
-        (pages, height, width, 3).
+        (pages, height, width, C).
     """
-    from irradia.bake.dilate_kernels import KNOWN, WANTED, grow
-
     pages = texels.to_pages(values)
-    state = texels.to_pages(np.full(len(values), KNOWN, np.uint8), fill=WANTED)
-    nothing = np.zeros(state.shape[1:], np.int64)
-    for page in range(texels.n_pages):
-        grow(pages[page], state[page], nothing, _GUTTER_PX)
-        pages[page] = _push_pull(pages[page], state[page] == KNOWN)
+    state = page_state(texels)
+    add_rings(pages, state, GUTTER_PX)
+    fill_rest(pages, state)
     return pages
 
 
-def _push_pull(image: F32, known: NDArray[np.bool_]) -> F32:
-    """Fills unknown texels with averages over ever larger squares."""
+def page_state(texels: TexelSet) -> NDArray[np.uint8]:
+    """(P, H, W) KNOWN where a texel is covered, WANTED elsewhere."""
+    from irradia.bake.dilate_kernels import KNOWN, WANTED
+
+    return texels.to_pages(np.full(len(texels.pixel), KNOWN, np.uint8), fill=WANTED)
+
+
+def add_rings(pages: F32, state: NDArray[np.uint8], n_rings: int) -> None:
+    """Continues what is known by a few rings, in place."""
+    from irradia.bake.dilate_kernels import grow
+
+    for page, own_state in zip(pages, state, strict=True):
+        grow(page, own_state, n_rings)
+
+
+def fill_rest(pages: F32, state: NDArray[np.uint8]) -> None:
+    """Fills all that is still unknown, in place, with averages over ever larger squares."""
+    from irradia.bake.dilate_kernels import KNOWN
+
+    for page, own_state in zip(pages, state, strict=True):
+        _push_pull(page, own_state == KNOWN)
+
+
+def _push_pull(image: F32, known: NDArray[np.bool_]) -> None:
+    from irradia.bake.dilate_kernels import fill_from, halve
+
     if known.all() or not known.any():
-        return image
-    coarse, coarse_known = _halve(image, known)
-    coarse = _push_pull(coarse, coarse_known)
-    return np.where(known[..., None], image, _double(coarse, image.shape[:2]))
+        return
+    coarse, coarse_known = halve(image, known)
+    _push_pull(coarse, coarse_known)
+    fill_from(coarse, image, known)
 
 
-def _halve(image: F32, known: NDArray[np.bool_]) -> tuple[F32, NDArray[np.bool_]]:
-    """Means over the known texels of each 2 × 2 square."""
-    height, width = known.shape
-    pad = ((0, height % 2), (0, width % 2))
-    weight = np.pad(known, pad).astype(np.float32)
-    weighted = np.pad(image, (*pad, (0, 0))) * weight[..., None]
-    quarters = [(dy, dx) for dy in (0, 1) for dx in (0, 1)]
-    total = np.sum([weighted[dy::2, dx::2] for dy, dx in quarters], axis=0)
-    count = np.sum([weight[dy::2, dx::2] for dy, dx in quarters], axis=0)
-    return total / np.maximum(count, 1)[..., None], count > 0
-
-
-def _double(image: F32, shape: tuple[int, int]) -> F32:
-    """Bilinear magnification by two, cut to ``shape``."""
-    for axis in (0, 1):
-        edge = [(1, 1) if k == axis else (0, 0) for k in range(3)]
-        padded = np.moveaxis(np.pad(image, edge, mode="edge"), axis, 0)
-        n = image.shape[axis]
-        doubled = np.empty((2 * n, *padded.shape[1:]), np.float32)
-        doubled[0::2] = 0.75 * padded[1:-1] + 0.25 * padded[:-2]
-        doubled[1::2] = 0.75 * padded[1:-1] + 0.25 * padded[2:]
-        image = np.moveaxis(doubled, 0, axis)
-    return image[: shape[0], : shape[1]]
+def _pages(texels: TexelSet) -> Iterator[tuple[int, slice]]:
+    """Each page and its part of the list."""
+    size = texels.height_px * texels.width_px
+    first = np.searchsorted(texels.pixel, np.arange(texels.n_pages + 1, dtype=np.int64) * size)
+    for page in range(texels.n_pages):
+        yield page, slice(int(first[page]), int(first[page + 1]))
