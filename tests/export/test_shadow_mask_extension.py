@@ -1,54 +1,88 @@
-"""Shadow masks inside a document."""
+"""Shadow masks travel inside the baked .glb, and live lights stay on their nodes."""
 
 from __future__ import annotations
 
+import copy
 import io
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
+import pytest
 from PIL import Image
 
-from irradia.export.lighting_extension import NAME
-from irradia.export.shadow_mask_extension import add_shadow_mask, bind_mask_channels
-from irradia.export.slots import Slots
+from irradia.export.glb import baked_glb
+from irradia.export.shadow_mask_extension import BakedShadows
+from irradia.formats.shadow_mask import quantise_shadow_mask
+from irradia.scene.gltf import GltfDocument, document_to_scene, read_document
 from irradia.scene.gltf.accessors import Accessors
-from irradia.scene.gltf.document import GltfDocument
+
+NAME = "IRRADIA_lighting"
+LAMP = {"KHR_lights_punctual": {"light": 0}}
+LAMP_NODE = 8
 
 
-def _slots(json) -> Slots:
-    return Slots(json, Accessors(GltfDocument({"asset": {"version": "2.0"}}, (), ())))
+@pytest.fixture
+def export(gallery: GltfDocument, bake, tmp_path: Path):
+    """Bakes the gallery again with its lamp in a mode, the mask in channel 2 where it has one."""
+
+    def run(mode: str, *, document: GltfDocument = gallery) -> tuple[Path, np.ndarray]:
+        plain = bake(document)
+        scene = replace(plain.scene, lights=tuple(replace(x, mode=mode) for x in plain.scene.lights))
+        pages = np.random.default_rng(1).random((*plain.pages.shape[:3], 4), np.float32)
+        shadows = BakedShadows(pages, (2,)) if mode == "mixed" else None
+        path = tmp_path / f"{mode}.glb"
+        path.write_bytes(baked_glb(scene, plain.layout, plain.pages, shadows=shadows))
+        return path, pages
+
+    return run
 
 
-def test_every_page_is_an_image_in_a_buffer_view_of_its_own():
-    json = {"asset": {"version": "2.0"}, "extensions": {NAME: {"version": 1, "lightmap": {}}}}
-    slots = _slots(json)
-    pages = np.stack([np.full((5, 7, 4), value, np.float32) for value in (0.0, 1.0)])
-    add_shadow_mask(json, slots, pages)
-    binary = slots.finish()
-    images = json["extensions"][NAME]["shadowMask"]["pages"]
-    for image, value in zip(images, (0, 255), strict=True):
-        view = json["bufferViews"][image["bufferView"]]
-        start = view.get("byteOffset", 0)
-        with Image.open(io.BytesIO(binary[start : start + view["byteLength"]])) as picture:
-            assert picture.size == (7, 5)
-            assert picture.getextrema() == ((value, value),) * 4
+def test_the_lamps_node_is_known_from_the_document(gallery):
+    assert [light.node_index for light in document_to_scene(gallery).lights] == [LAMP_NODE]
 
 
-def test_channels_stand_on_their_lights_nodes_and_earlier_ones_are_forgotten():
-    lamp = {"KHR_lights_punctual": {"light": 0}}
-    json = {
-        "nodes": [
-            {"extensions": {**lamp}},
-            {"extensions": {**lamp, NAME: {"shadowMaskChannel": 3}}},
-            {"extensions": {NAME: {"shadowMaskChannel": 1}}},
-            {"extensions": {NAME: {"primitives": [{}], "shadowMaskChannel": 1}}},
-            {"name": "plain"},
-        ]
-    }
-    bind_mask_channels(json, {0: 2})
-    assert json["nodes"] == [
-        {"extensions": {**lamp, NAME: {"shadowMaskChannel": 2}}},
-        {"extensions": lamp},
-        {},
-        {"extensions": {NAME: {"primitives": [{}]}}},
-        {"name": "plain"},
-    ]
+def test_every_page_is_an_image_of_its_own(export):
+    path, pages = export("mixed")
+    document = read_document(path)
+    images = document.json["extensions"][NAME]["shadowMask"]["pages"]
+    for image, page in zip(images, pages, strict=True):
+        data = bytes(Accessors(document).read_view(image["bufferView"]))
+        with Image.open(io.BytesIO(data)) as picture:
+            np.testing.assert_array_equal(np.asarray(picture), quantise_shadow_mask(page))
+
+
+@pytest.mark.parametrize(
+    ("mode", "extensions"),
+    [
+        ("mixed", {**LAMP, NAME: {"shadowMaskChannel": 2}}),
+        ("realtime", LAMP),
+        ("off", LAMP),
+        ("baked", {NAME: {"bakedLight": 0}}),
+    ],
+)
+def test_a_lamp_stays_on_its_node_unless_it_is_baked(export, mode, extensions):
+    document = read_document(export(mode)[0])
+    assert document.json["nodes"][LAMP_NODE]["extensions"] == extensions
+    assert ("shadowMask" in document.json["extensions"][NAME]) == (mode == "mixed")
+
+
+@pytest.mark.parametrize("first", ["mixed", "baked", "realtime"])
+@pytest.mark.parametrize("second", ["mixed", "baked", "realtime"])
+def test_a_later_bake_tells_what_it_would_tell_without_the_earlier_one(export, first, second):
+    again = read_document(export(second, document=read_document(export(first)[0]))[0])
+    fresh = read_document(export(second)[0])
+    assert again.json["nodes"][LAMP_NODE] == fresh.json["nodes"][LAMP_NODE]
+    assert again.json["extensions"][NAME].keys() == fresh.json["extensions"][NAME].keys()
+
+
+@pytest.mark.parametrize("mode", ["mixed", "realtime"])
+def test_the_file_is_valid(web_check, repo_root, export, mode):
+    schemas = repo_root / "docs" / "IRRADIA_lighting" / "schema"
+    assert web_check("validate", export(mode)[0], schemas) == {"issues": [], "complaints": []}
+
+
+def test_the_imported_document_is_left_as_it_was(gallery, export):
+    before = copy.deepcopy(gallery.json)
+    export("mixed")
+    assert gallery.json == before

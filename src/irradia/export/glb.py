@@ -23,6 +23,7 @@ from irradia.export.lighting_extension import InstanceTables, bind_node
 from irradia.export.meshes import MeshVersions, freed_accessors, freed_materials, primitive_texcoord
 from irradia.export.moz_lightmap import MozLightmaps
 from irradia.export.primitives import DRACO, MOZ_LIGHTMAP, PrimitiveWriter
+from irradia.export.shadow_mask_extension import BakedShadows, add_shadow_mask, live_nodes
 from irradia.export.slots import Slots
 from irradia.formats.ktx2 import Encoding
 from irradia.scene.gltf.accessors import Accessors
@@ -44,12 +45,13 @@ def write_baked_glb(
     compatible: bool = False,
     encoding: Encoding = "rgb9e5",
     directional: DirectionalMaps | None = None,
+    shadows: BakedShadows | None = None,
 ) -> None:
     """Writes the scene's document with its lightmap, whole or not at all.
 
     Everything that the bake didn't touch keeps its meaning and its index. Vertices are split where
     the unwrap needs it, morph targets, joints and weights with them. Mesh compression is undone,
-    images stay as encoded. Punctual lights move into our extension: their light is in the map.
+    images stay as encoded. Baked punctual lights move into our extension: their light is in the map.
 
     Args:
         path: The .glb.
@@ -61,6 +63,7 @@ def write_baked_glb(
             IRRADIA_lighting light them.
         encoding: Of the HDR map.
         directional: Maps that say where the light comes from.
+        shadows: What arrives of the lights that shine live.
     """
     data = baked_glb(
         scene,
@@ -69,6 +72,7 @@ def write_baked_glb(
         compatible=compatible,
         encoding=encoding,
         directional=directional,
+        shadows=shadows,
     )
     with write_atomic(path) as stream:
         stream.write(data)
@@ -82,12 +86,13 @@ def baked_glb(
     compatible: bool = False,
     encoding: Encoding = "rgb9e5",
     directional: DirectionalMaps | None = None,
+    shadows: BakedShadows | None = None,
 ) -> bytes:
     """The bytes of :func:`write_baked_glb`."""
     if scene.document is None:
         raise InternalError("the scene to export has no document")
     export = _Export(scene, scene.document, layout, pages, compatible)
-    binary = export.run(encoding, directional)
+    binary = export.run(encoding, directional, shadows)
     return _container(export.json, binary)
 
 
@@ -124,17 +129,20 @@ class _Export:
             free_textures=remove_earlier_bake(self.json),
         )
 
-    def run(self, encoding: Encoding, directional: DirectionalMaps | None) -> bytes:
+    def run(
+        self, encoding: Encoding, directional: DirectionalMaps | None, shadows: BakedShadows | None
+    ) -> bytes:
         """Changes the JSON and returns the binary chunk."""
         self._bind_nodes()
         writer = PrimitiveWriter(self._document, self._accessors, self._slots)
         MeshVersions(self.json, self._scene, self._layout, writer, self._moz).write(self._bound)
         used = {MOZ_LIGHTMAP} if self._moz.used else set()
         if self._bound:
-            lighting_extension.move_baked_lights(self.json)
+            lighting_extension.move_baked_lights(self.json, live_nodes(self._scene.lights))
             lighting_extension.add_lightmap(self.json, self._slots, self._pages, encoding)
             if directional is not None:
                 add_directional(self.json, self._slots, directional, encoding)
+            add_shadow_mask(self.json, self._slots, self._scene.lights, shadows)
             used.add(lighting_extension.NAME)
         self._embed_images()
         self._list_extensions(used)

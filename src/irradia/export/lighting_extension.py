@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -94,19 +94,25 @@ def bind_node(
     node.setdefault("extensions", {}).setdefault(NAME, {})["primitives"] = entries
 
 
-def move_baked_lights(json: Json) -> bool:
-    """Takes punctual lights off their nodes, because the map holds their light; returns whether any was.
+def move_baked_lights(json: Json, live: Container[int] = ()) -> None:
+    """Takes punctual lights off their nodes, because the map holds their light.
 
-    The reference moves to ``bakedLight`` of our extension, the definitions stay where they are.
+    The reference moves to ``bakedLight`` of our extension, the definitions stay where they are. Lights
+    that shine live stay on their nodes, and come back to them where an earlier bake took them off.
+
+    Args:
+        json: The document being written; changed.
+        live: Nodes whose lights shine live.
     """
-    found = False
-    for node in json.get("nodes", []):
+    for index, node in enumerate(json.get("nodes", [])):
         extensions = node.get("extensions", {})
-        light = extensions.pop(_LIGHTS, None)
-        if light is not None:
-            extensions.setdefault(NAME, {})["bakedLight"] = light["light"]
-            found = True
-    return found
+        if index in live and "bakedLight" in extensions.get(NAME, {}):
+            extensions[_LIGHTS] = {"light": extensions[NAME].pop("bakedLight")}
+            if not extensions[NAME]:
+                del extensions[NAME]
+        elif index not in live and _LIGHTS in extensions:
+            light = extensions.pop(_LIGHTS)["light"]
+            extensions.setdefault(NAME, {})["bakedLight"] = light
 
 
 def _rectangle(layout: LightmapLayout, binding: Binding) -> Json:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,35 +12,59 @@ from irradia.export.lighting_extension import NAME
 from irradia.export.slots import Slots
 from irradia.formats.shadow_mask import encode_shadow_mask
 from irradia.scene.gltf.document import Json
+from irradia.scene.types import Light
 
 
-def add_shadow_mask(json: Json, slots: Slots, pages: NDArray[np.float32]) -> None:
-    """Adds the mask beside the lightmap that the document already holds.
+@dataclass(frozen=True)
+class BakedShadows:
+    """What arrives of live lights.
+
+    Attributes:
+        pages: (P, H, W, 4) visibility, as many and as large as the lightmap's.
+        channels: By light of the scene: 0 … 3, or None for those without a mask.
+    """
+
+    pages: NDArray[np.float32]
+    channels: tuple[int | None, ...]
+
+
+def live_nodes(lights: Sequence[Light]) -> frozenset[int]:
+    """Nodes whose lights shine on at run time."""
+    return frozenset(
+        light.node_index for light in lights if light.mode != "baked" and light.node_index is not None
+    )
+
+
+def add_shadow_mask(json: Json, slots: Slots, lights: Sequence[Light], shadows: BakedShadows | None) -> None:
+    """Adds the mask beside the lightmap that the document already holds, and says whose it is.
 
     Args:
-        json: The document being written; changed.
+        json: The document being written; changed. What earlier bakes said of masks goes.
         slots: Where the images' bytes go.
-        pages: (P, H, W, 4) visibility, as many and as large as the lightmap's.
+        lights: The scene's.
+        shadows: None where no light has a mask.
     """
-    images: list[Json] = [{"mimeType": "image/png", "bufferView": -1} for _ in pages]
-    for image, page in zip(images, pages, strict=True):
+    for node in json.get("nodes", []):
+        _forget(node)
+    if shadows is None:
+        return
+    for light, channel in zip(lights, shadows.channels, strict=True):
+        if channel is not None and light.node_index is not None:
+            extensions = json["nodes"][light.node_index].setdefault("extensions", {})
+            extensions.setdefault(NAME, {})["shadowMaskChannel"] = channel
+    images: list[Json] = [{"mimeType": "image/png", "bufferView": -1} for _ in shadows.pages]
+    for image, page in zip(images, shadows.pages, strict=True):
         data = encode_shadow_mask(page)
         slots.add_blob(data, lambda view, image=image: image.update(bufferView=view))
     json["extensions"][NAME]["shadowMask"] = {"pages": images}
 
 
-def bind_mask_channels(json: Json, channel_of_node: Mapping[int, int]) -> None:
-    """Tells nodes with live lights which channel holds their shadow; forgets what earlier bakes told."""
-    for index, node in enumerate(json.get("nodes", [])):
-        extensions = node.setdefault("extensions", {})
-        ours = extensions.setdefault(NAME, {})
-        ours.pop("shadowMaskChannel", None)
-        if index in channel_of_node:
-            ours["shadowMaskChannel"] = channel_of_node[index]
-        _drop_empty(extensions, NAME)
-        _drop_empty(node, "extensions")
-
-
-def _drop_empty(holder: Json, key: str) -> None:
-    if not holder[key]:
-        del holder[key]
+def _forget(node: Json) -> None:
+    """Takes away an earlier bake's channel, and what is empty then."""
+    extensions = node.get("extensions", {})
+    if extensions.get(NAME, {}).pop("shadowMaskChannel", None) is None:
+        return
+    if not extensions[NAME]:
+        del extensions[NAME]
+    if not extensions:
+        del node["extensions"]

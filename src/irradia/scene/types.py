@@ -191,6 +191,7 @@ class Light:
             has no part in the bake.
         profile: Replaces the cone; ``intensity`` then multiplies its candela.
         up: World-space unit vector across ``direction``: where the profile's horizontal 0° points.
+        node_index: The glTF node, or None for light from elsewhere.
     """
 
     kind: LightKind
@@ -206,6 +207,7 @@ class Light:
     profile: IesProfile | None = None
     up: Rgb = (0.0, 1.0, 0.0)
     name: str = ""
+    node_index: int | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True)

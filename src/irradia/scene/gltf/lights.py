@@ -84,6 +84,7 @@ def _read_light(view: JsonView, node: PlacedNode, notes: ImportNotes) -> Light:
         mode=settings.mode(),
         up=_along(node, 0, 1.0, (1.0, 0.0, 0.0)),
         name=view.string("name") or node.name,
+        node_index=node.index,
     )
 
 
@@ -105,6 +106,7 @@ def _read_measured_light(
         profile=profile,
         up=_along(node, 0, 1.0, (1.0, 0.0, 0.0)),
         name=node.name,
+        node_index=node.index,
     )
 
 
