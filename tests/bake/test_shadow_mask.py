@@ -188,6 +188,11 @@ def test_only_mixed_lights_are_planned_and_those_too_many_are_named():
     (note,) = plan.notes(lights)
     assert note.endswith("lamp 1, lamp 2")
     assert plan.needed
+    told = plan.to_json(lights, ["shadow_mask.png"])
+    assert told["files"] == ["shadow_mask.png"]
+    assert told["baked_instead"] == [{"light": 3, "name": "lamp 1"}, {"light": 4, "name": "lamp 2"}]
+    assert [entry["light"] for entry in told["lights"]] == [5, 6, 7, 8]
+    assert sorted(entry["channel"] for entry in told["lights"]) == [0, 1, 2, 3]
     assert not plan_shadow_mask(mesh, lights[:3]).needed
     assert ShadowMaskPlan((None, None)).notes(lights) == ()
 

@@ -6,8 +6,9 @@ are then baked like others; :func:`bake_shadow_mask`; :func:`finish_shadow_mask`
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,6 +76,18 @@ class ShadowMaskPlan:
             replace(light, mode="baked") if index in self.fallback else light
             for index, light in enumerate(lights)
         )
+
+    def to_json(self, lights: tuple[Light, ...], files: Sequence[str]) -> dict[str, Any]:
+        """What ``bake.json`` says of the masks: which files, and which light's shadow is where."""
+        return {
+            "files": list(files),
+            "lights": [
+                {"light": index, "name": lights[index].name, "channel": channel}
+                for index, channel in enumerate(self.channels)
+                if channel is not None
+            ],
+            "baked_instead": [{"light": index, "name": lights[index].name} for index in self.fallback],
+        }
 
     def notes(self, lights: tuple[Light, ...]) -> tuple[str, ...]:
         """What the user should know."""
