@@ -1,23 +1,22 @@
-"""The lightmap bake: from a scene and its layout to E/π in every texel."""
+"""The lightmap bake: from a scene and its layout to finished maps."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from irradia.bake.directional_modes import MODES
-from irradia.bake.options import MAX_SAMPLES, BakeOptions, Mode
-from irradia.bake.plan import plan_epochs, slice_bounds
+from irradia.bake.options import BakeOptions
 from irradia.bake.progressive import Pass, ProgressiveBake
-from irradia.bake.rounds import PERCENTILE, ROUND, AdaptiveRounds, Rounds, UniformRounds
+from irradia.bake.rounds import PERCENTILE
+from irradia.bake.shadow_mask import ShadowMaskPlan
 from irradia.bake.texels import TexelSet
-from irradia.core import InputError, Progress, Seed, silent_progress
+from irradia.core import Progress, silent_progress
 from irradia.scene.layout import LightmapLayout
-from irradia.scene.merge import MergedMesh, merge
+from irradia.scene.merge import MergedMesh
 from irradia.scene.types import F32, U32, Camera, Light, Scene
 
 if TYPE_CHECKING:
@@ -58,8 +57,13 @@ class LightmapResult:
             is that of the others.
         sample_count: (N,) rays that make the result.
         pages: (P, H, W, 3) finished: denoised where asked, dilated.
-        directional: Maps of the light's direction, where they were asked for.
         stats: What the bake did and how fast; plain values, fit for JSON.
+        all_light: (P, H, W, 3) with the first bounce of live lights, where there are any: what
+            surfaces shine with.
+        directional: Maps of the light's direction, where they were asked for.
+        shadows: (P, H, W, 4) what arrives of live lights, where any has a channel.
+        lights: The scene's, with the part that each has had.
+        shadow_channels: For each, its channel of ``shadows`` or None.
     """
 
     texels: TexelSet
@@ -68,7 +72,11 @@ class LightmapResult:
     sample_count: U32
     pages: F32
     stats: dict[str, Any]
+    all_light: F32 | None = None
     directional: DirectionalMaps | None = None
+    shadows: F32 | None = None
+    lights: tuple[Light, ...] = ()
+    shadow_channels: tuple[int | None, ...] = ()
 
     @property
     def valid(self) -> NDArray[np.bool_]:
@@ -95,6 +103,9 @@ class LightmapBake:
         hidden_share: See :class:`LightmapResult`.
         bake: The passes.
         meter: Noise of the result so far.
+        lights: The scene's, with the part that each has.
+        masks: Which of them have a shadow mask.
+        region: (N,) parts of charts over which light may be taken from texel to texel, or None.
     """
 
     options: BakeOptions
@@ -105,25 +116,49 @@ class LightmapBake:
     hidden_share: F32
     bake: ProgressiveBake
     meter: NoiseMeter
+    lights: tuple[Light, ...]
+    masks: ShadowMaskPlan
+    region: U32 | None = None
+
+    @property
+    def valid(self) -> NDArray[np.bool_]:
+        """(N,) whether a texel's light counts."""
+        return self.hidden_share < 1.0
 
     def passes(self, progress: Progress | None = None) -> Iterator[Pass]:
         """Runs the bake from where it stands; see :class:`Pass` for what each tells."""
         return self.bake.passes(progress or silent_progress())
 
-    def result(self, progress: Progress | None = None) -> LightmapResult:
-        """The map as it is now, finished for use."""
+    def estimate(self) -> F32:
+        """(N, 3) E/π as known now."""
+        return self.light.to_host(self.bake.estimate())
+
+    def result(self, progress: Progress | None = None, estimate: F32 | None = None) -> LightmapResult:
+        """The map as it is now, finished for use.
+
+        Args:
+            progress: Shows stages.
+            estimate: (N, 3) E/π in place of what this bake has found: parts of an earlier one.
+        """
         progress = progress or silent_progress()
-        estimate = self.light.to_host(self.bake.estimate())
-        valid = self.hidden_share < 1.0
-        finisher = self._finisher(valid, progress)
+        estimate = self.estimate() if estimate is None else estimate
+        finisher = self._finisher(progress)
         pages = finisher.irradiance(estimate)
-        directional = self._directional(pages, valid, finisher, progress)
-        counts = self.bake.sample_counts()
         return LightmapResult(
-            self.texels, estimate, self.hidden_share, counts, pages, self.stats(), directional
+            self.texels,
+            estimate,
+            self.hidden_share,
+            self.bake.sample_counts(),
+            pages,
+            self.stats(),
+            self._all_light(estimate, pages, finisher),
+            self._directional(pages, finisher, progress),
+            self._shadows(pages, finisher, progress),
+            self.lights,
+            self.masks.channels,
         )
 
-    def _finisher(self, valid: NDArray[np.bool_], progress: Progress) -> Finisher:
+    def _finisher(self, progress: Progress) -> Finisher:
         from irradia.bake.finish import Finisher, FinishOptions
         from irradia.bake.seam_points import find_seam_points
 
@@ -132,11 +167,16 @@ class LightmapBake:
         if options.seams:
             with progress.stage("seams"):
                 seams = find_seam_points(self.mesh, self.layout)
-        return Finisher(self.texels, valid, options, progress, seams=seams)
+        return Finisher(self.texels, self.valid, options, progress, region=self.region, seams=seams)
 
-    def _directional(
-        self, pages: F32, valid: NDArray[np.bool_], finisher: Finisher, progress: Progress
-    ) -> DirectionalMaps | None:
+    def _all_light(self, estimate: F32, pages: F32, finisher: Finisher) -> F32 | None:
+        """The finished map and, where lights are live, their first bounce, which has little noise."""
+        if not self.light.channels.live:
+            return None
+        live = finisher.companion(self.light.to_host(self.bake.live_light()), pages, lowest=0.0)
+        return pages + live
+
+    def _directional(self, pages: F32, finisher: Finisher, progress: Progress) -> DirectionalMaps | None:
         mode = self.options.directional
         if mode is None:
             return None
@@ -148,11 +188,27 @@ class LightmapBake:
             pages,
             self.bake.moments(),
             texel_normals(self.mesh, self.texels),
-            valid,
+            self.valid,
             denoise=self.options.denoise,
             progress=progress,
             finisher=finisher,
         )
+
+    def _shadows(self, pages: F32, finisher: Finisher, progress: Progress) -> F32 | None:
+        if not self.masks.needed:
+            return None
+        from irradia.bake.shadow_mask import ShadowMaskOptions, bake_shadow_mask, finish_shadow_mask
+
+        mask = bake_shadow_mask(
+            self.light.world,
+            self.light.subsamples,
+            self.texels,
+            self.lights,
+            self.masks,
+            ShadowMaskOptions(seed=self.options.seed),
+            progress,
+        )
+        return finish_shadow_mask(mask, self.texels, self.valid, pages, finisher, self.region)
 
     def stats(self) -> dict[str, Any]:
         """What the bake did and how fast; plain values, fit for JSON."""
@@ -173,7 +229,8 @@ class LightmapBake:
             "samples_per_second": now.n_rays / seconds,
             "rays_per_second": (now.n_rays + n_direct) / seconds,
             "noise_p95": self._noise(),
-            "valid_share": float((self.hidden_share < 1.0).mean()),
+            "clamped_off_share": self.bake.clamped_off_share(),
+            "valid_share": float(self.valid.mean()),
             "clamped_materials": light.world.clamped_materials,
         }
 
@@ -210,148 +267,11 @@ def start_bake(
     progress: Progress | None = None,
     selection: Selection | None = None,
 ) -> LightmapBake:
-    """Prepares everything up to the first ray.
+    """Prepares everything up to the first ray; see :mod:`irradia.bake.setup`.
 
     Raises:
         InputError: If nothing in the scene takes a lightmap.
     """
-    from irradia.transport.texel_noise import NoiseMeter
+    from irradia.bake.setup import set_up
 
-    progress, selection = progress or silent_progress(), selection or Selection()
-    scene = replace(scene, lights=lights_in_mode(scene.lights, options.mode))
-    with progress.stage("texels"):
-        mesh, texels = cover(scene, layout)
-    with progress.stage("ray tracing set-up"):
-        light = prepare(scene, mesh, layout, texels, options)
-    _warn_of_clamped(light, progress)
-    with progress.stage("hidden texels"):
-        hidden_share = light.drop_hidden_subsamples()
-    valid = hidden_share < 1.0
-    chosen = valid & _chosen_texels(texels, mesh, selection)
-    traced = _indices(valid if options.cached else chosen)
-    with progress.stage("kernels"):
-        light.warm_up(traced, light.cache_of_nothing(options.cached, one_bounce=options.mode == "direct"))
-    meter = NoiseMeter(texels.pixel, texels.chart, (texels.n_pages, texels.height_px, texels.width_px))
-    queues = _queues(light, chosen, selection, progress)
-    samples = options.planned_samples
-    bake = ProgressiveBake(
-        light,
-        plan_epochs(
-            samples,
-            cached=options.cached and options.mode != "direct",
-            hurry=selection.view is not None,
-        ),
-        _rounds(queues, options, selection, lambda: meter.relative_error(bake.progression.total)),
-        meter,
-        traced,
-        Seed(options.seed).child("bake"),
-        samples=samples,
-        time_s=options.time_s,
-        one_bounce=options.mode == "direct",
-    )
-    return LightmapBake(options, mesh, layout, texels, light, hidden_share, bake, meter)
-
-
-def cover(scene: Scene, layout: LightmapLayout) -> tuple[MergedMesh, TexelSet]:
-    """Merges the scene and lists its covered texels."""
-    from irradia.bake.rasterise import rasterise
-
-    mesh = merge(scene, layout)
-    texels = rasterise(mesh, layout)
-    if len(texels.pixel) == 0:
-        raise InputError("nothing in the scene takes a lightmap", where=scene.name)
-    return mesh, texels
-
-
-def prepare(
-    scene: Scene, mesh: MergedMesh, layout: LightmapLayout, texels: TexelSet, options: BakeOptions
-) -> TexelLight:
-    """Uploads the scene and its texels."""
-    from irradia.scene.tangents import world_tangents
-    from irradia.transport.channels import Channels
-    from irradia.transport.frames import TangentFrames
-    from irradia.transport.moments import MOMENTS
-    from irradia.transport.normal_maps import NormalMaps
-    from irradia.transport.texel_light import TexelLight
-    from irradia.transport.world import World
-
-    world = World(scene, mesh, (layout.width_px, layout.height_px), robust=not options.fast_rays)
-    frames = normal_maps = None
-    moments = MOMENTS[MODES[options.directional].moments]() if options.directional else None
-    if options.normal_maps or (moments and moments.tangent_space):
-        frames = TangentFrames(world_tangents(scene, mesh, layout))
-        normal_maps = NormalMaps(scene, frames) if options.normal_maps else None
-    live = any(light.mode in ("mixed", "realtime") for light in scene.lights)
-    channels = Channels(live, options.indirect_clamp, moments)
-    return TexelLight(
-        world,
-        texels.pixel,
-        texels.samples,
-        options.nee_ratio,
-        channels,
-        normal_maps=normal_maps,
-        frames=frames if moments and moments.tangent_space else None,
-    )
-
-
-def lights_in_mode(lights: tuple[Light, ...], mode: Mode) -> tuple[Light, ...]:
-    """Punctual lights with the part that a bake of one mode gives them."""
-    if mode == "indirect":
-        return tuple(replace(light, mode="realtime") if light.mode == "baked" else light for light in lights)
-    if mode == "direct":
-        return tuple(replace(light, mode="baked") if light.mode != "off" else light for light in lights)
-    return lights
-
-
-def _warn_of_clamped(light: TexelLight, progress: Progress) -> None:
-    names = ", ".join(name or "an unnamed material" for name in light.world.clamped_materials)
-    if names:
-        progress.say(f"note: reflectance is limited to 0.98 in {names}")
-
-
-def _chosen_texels(texels: TexelSet, mesh: MergedMesh, selection: Selection) -> NDArray[np.bool_]:
-    chosen = np.ones(len(texels.pixel), np.bool_)
-    if selection.covered is not None:
-        chosen[:] = False
-        chosen[selection.covered] = True
-    if selection.instances is not None:
-        chosen &= selection.instances[mesh.instance[texels.triangle]]
-    return chosen
-
-
-def _queues(
-    light: TexelLight, chosen: NDArray[np.bool_], selection: Selection, progress: Progress
-) -> list[U32]:
-    """Lists of texels in order of importance."""
-    if selection.view is None:
-        return [_indices(chosen)]
-    with progress.stage("what the camera sees"):
-        seen = light.seen_from(selection.view)
-    progress.say(f"The camera sees {float(seen[chosen].mean()):.0%} of the texels: these come first.")
-    return [_indices(chosen & seen), _indices(chosen & ~seen)]
-
-
-def _indices(mask: NDArray[np.bool_]) -> U32:
-    return np.flatnonzero(mask).astype(np.uint32)
-
-
-def _rounds(
-    queues: list[U32], options: BakeOptions, selection: Selection, relative_error: Callable[[], F32]
-) -> Rounds:
-    if options.watches_noise:
-        samples = options.samples or MAX_SAMPLES
-        return AdaptiveRounds(queues, relative_error, noise=options.noise, samples=samples)
-    if options.samples is None:
-        return UniformRounds(queues, range(ROUND, MAX_SAMPLES + 1, ROUND))
-    ends = slice_bounds(options.samples, sum(len(queue) for queue in queues))
-    if selection.shard is None:
-        return UniformRounds(queues, ends)
-    number, count = selection.shard
-    if count > len(ends):
-        raise InputError(
-            f"expected at most {len(ends)} shards for this bake, found {count}",
-            where="--shard",
-            fix="More samples or texels can be divided among more machines.",
-        )
-    first, last = ((number + i) * len(ends) // count for i in (-1, 0))
-    return UniformRounds(queues, ends, first=first, last=last)
+    return set_up(scene, layout, options, progress or silent_progress(), selection or Selection())

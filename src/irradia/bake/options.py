@@ -85,7 +85,12 @@ class BakeOptions:
     @property
     def nee_ratio(self) -> float:
         """Next-event samples per gather ray: fewer where a cache spares most of the noise."""
-        return CACHED_NEE_RATIO if self.cached and self.mode != "direct" else 1.0
+        return CACHED_NEE_RATIO if self.cached and not self.one_bounce else 1.0
+
+    @property
+    def one_bounce(self) -> bool:
+        """Whether light ends where it first arrives."""
+        return self.mode == "direct"
 
     @property
     def watches_noise(self) -> bool:

@@ -324,6 +324,19 @@ class ProgressiveBake:
             [self.light.to_host(sums.mean(c)) for c in range(channels.first_moment, channels.count)], axis=1
         )
 
+    def live_light(self) -> TexelColour:
+        """First bounce of the lights that are lit live: in no map, but surfaces shine with it."""
+        return self.progression.total.plus(self.progression.part).mean(1)
+
+    def clamped_off_share(self) -> float | None:
+        """Share of the light that a clamp has cut off, where there is one."""
+        channels = self.light.channels
+        if channels.clamp is None:
+            return None
+        sums = self.progression.total.plus(self.progression.part)
+        lost = self.light.mean(sums.mean(channels.clamped_off))
+        return lost / max(lost + self.light.mean(sums.mean()), 1e-30)
+
     @property
     def _known_before(self) -> TexelColour:
         """E/π that the present epoch's cache is made of."""

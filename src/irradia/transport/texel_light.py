@@ -26,6 +26,7 @@ from irradia.transport.path import LightCache, direct, draw_ray, start, trace
 from irradia.transport.sampling import Sampler, hash_u32
 from irradia.transport.subsample_set import SubsampleSet
 from irradia.transport.subsamples import Subsamples
+from irradia.transport.texel_appearance import TexelAppearance
 from irradia.transport.texel_sums import Lanes, TexelSums
 from irradia.transport.view import seen_texels
 from irradia.transport.world import TriangleRecord, World
@@ -111,7 +112,7 @@ class TexelLight:
         self.nee_ratio = nee_ratio
         self.channels = channels or Channels()
         self._normal_maps, self._frames = normal_maps, frames
-        self._subsamples = Subsamples(world, pixel, samples)
+        self.subsamples = Subsamples(world, pixel, samples)
         self._pixel = mi.UInt32(pixel)
         self._every = dr.arange(mi.UInt32, self.n_texels)
         dr.eval(self._every)
@@ -151,19 +152,20 @@ class TexelLight:
 
     def drop_hidden_subsamples(self) -> NDArray[np.float32]:
         """See :func:`irradia.transport.hidden.drop_hidden`."""
-        return drop_hidden(self.world, self._subsamples)
+        return drop_hidden(self.world, self.subsamples)
 
     def seen_from(self, camera: Camera) -> NDArray[np.bool_]:
         """See :func:`irradia.transport.view.seen_texels`."""
-        return seen_texels(self.world, self._subsamples, camera)
+        return seen_texels(self.world, self.subsamples, camera)
 
     def reflectance(self) -> mi.Color3f:
         """Mean ρ over each texel's footprint, of the light that stops there."""
         rho, stops = dr.zeros(mi.Color3f, self.n_texels), dr.zeros(mi.Float, self.n_texels)
         texel = dr.arange(mi.UInt32, self.n_texels)
-        for subsample in range(self._subsamples.count):
-            triangle, bary = self._subsamples.fetch(texel, dr.opaque(mi.UInt32, subsample))
-            looks = self.world.appearance(triangle, bary, mi.Bool(True))
+        looks_at = TexelAppearance(self.world, self.subsamples.count)
+        for subsample in range(self.subsamples.count):
+            triangle, bary = self.subsamples.fetch(texel, dr.opaque(mi.UInt32, subsample))
+            looks = looks_at.at(triangle, bary, mi.Bool(True))
             rho += looks.reflectance
             stops += 1.0 - looks.pass_probability
             dr.eval(rho, stops)
@@ -193,7 +195,7 @@ class TexelLight:
 
         rays = lanes.count(draw.rays)
         first = lanes.read(earlier.rays) + part * rays
-        shift = dr.opaque(mi.UInt32, draw.first_subsample % self._subsamples.count)
+        shift = dr.opaque(mi.UInt32, draw.first_subsample % self.subsamples.count)
         gathered = self._gather(texel, _stream(pixel, draw.seed), first, first + rays, shift, cache)
 
         arrived = self.channels.zeros()
@@ -220,7 +222,7 @@ class TexelLight:
         k = mi.UInt32(first)
         while k < last:
             block = k // _RAYS_PER_SUBSAMPLE
-            point, frame = self._receiver(texel, (block + shift) % self._subsamples.count)
+            point, frame = self._receiver(texel, (block + shift) % self.subsamples.count)
             block_end = dr.minimum(last, (block + 1) * _RAYS_PER_SUBSAMPLE)
             while k < block_end:
                 sampler = Sampler(mi.UInt32(k), mi.UInt32(texel_seed))
@@ -243,7 +245,7 @@ class TexelLight:
         ratio = dr.opaque(mi.Float, self.nee_ratio)
         k = mi.UInt32(first)
         while k < last:
-            point, frame = self._receiver(texel, k % self._subsamples.count)
+            point, frame = self._receiver(texel, k % self.subsamples.count)
             sampler = Sampler(mi.UInt32(k), mi.UInt32(texel_seed))
             arrival = direct(self.world, point, sampler, ratio, mi.Bool(True), hemisphere)
             sums = _plus(sums, self.channels.of_arrival(arrival, frame))
@@ -254,10 +256,10 @@ class TexelLight:
         """The place that light is gathered at, bent by its normal map where those count."""
         active = mi.Bool(True)
         if self._normal_maps is None and self._frames is None:
-            point = self._subsamples.point(self.world, texel, subsample)
+            point = self.subsamples.point(self.world, texel, subsample)
             return point, Frame.around(point.ns)
-        triangle, bary = self._subsamples.fetch(texel, subsample)
-        point = self._subsamples.point(self.world, texel, subsample)
+        triangle, bary = self.subsamples.fetch(texel, subsample)
+        point = self.subsamples.point(self.world, texel, subsample)
         if self._normal_maps is not None:
             point = self._normal_maps.apply(self.world, point, triangle, bary, active)
         if self._frames is None:

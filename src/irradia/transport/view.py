@@ -37,7 +37,7 @@ def _sees(
     distance = dr.norm(towards)
     direction = towards / dr.maximum(distance, 1e-20)
     active = active & (dr.dot(point.ng, direction) > 0.0) & _in_frustum(camera, -towards)
-    through = world.transmittance(point.origin, direction, distance * (1.0 - 1e-4), active)
+    through = world.transmittance(point.origin, direction, distance * (1.0 - 1e-4), active, point.lod)
     return active & (dr.max(through) > 0.0)
 
 

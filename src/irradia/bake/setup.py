@@ -1,0 +1,177 @@
+"""Everything that stands between a scene and its first ray."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irradia.bake.directional_modes import MODES
+from irradia.bake.lightmap import LightmapBake, Selection
+from irradia.bake.options import MAX_SAMPLES, BakeOptions, Mode
+from irradia.bake.plan import plan_epochs, slice_bounds
+from irradia.bake.progressive import ProgressiveBake
+from irradia.bake.rounds import ROUND, AdaptiveRounds, Rounds, UniformRounds
+from irradia.bake.shadow_mask import plan_shadow_mask
+from irradia.bake.texels import TexelSet
+from irradia.core import InputError, Progress, Seed
+from irradia.scene.layout import LightmapLayout
+from irradia.scene.merge import MergedMesh, merge
+from irradia.scene.types import F32, U32, Light, Scene
+
+if TYPE_CHECKING:
+    from irradia.transport.texel_light import TexelLight
+
+
+def set_up(
+    scene: Scene, layout: LightmapLayout, options: BakeOptions, progress: Progress, selection: Selection
+) -> LightmapBake:
+    """Lists texels, uploads the scene, compiles kernels and decides who gets rays.
+
+    Raises:
+        InputError: If nothing in the scene takes a lightmap.
+    """
+    from irradia.transport.texel_noise import NoiseMeter
+
+    with progress.stage("texels"):
+        mesh, texels = cover(scene, layout)
+    lights = lights_in_mode(scene.lights, options.mode)
+    masks = plan_shadow_mask(mesh, lights)
+    for note in masks.notes(lights):
+        progress.say(f"note: {note}")
+    scene = replace(scene, lights=masks.lights(lights))
+    with progress.stage("ray tracing set-up"):
+        light = prepare(scene, mesh, layout, texels, options)
+    _warn_of_clamped(light, progress)
+    with progress.stage("hidden texels"):
+        hidden_share = light.drop_hidden_subsamples()
+    valid = hidden_share < 1.0
+    chosen = valid & _chosen_texels(texels, mesh, selection)
+    traced = _indices(valid if options.cached else chosen)
+    with progress.stage("kernels"):
+        light.warm_up(traced, light.cache_of_nothing(options.cached, one_bounce=options.one_bounce))
+    meter = NoiseMeter(texels.pixel, texels.chart, (texels.n_pages, texels.height_px, texels.width_px))
+    queues = _queues(light, chosen, selection, progress)
+    samples = options.planned_samples
+    bake = ProgressiveBake(
+        light,
+        plan_epochs(
+            samples, cached=options.cached and not options.one_bounce, hurry=selection.view is not None
+        ),
+        _rounds(queues, options, selection, lambda: meter.relative_error(bake.progression.total)),
+        meter,
+        traced,
+        Seed(options.seed).child("bake"),
+        samples=samples,
+        time_s=options.time_s,
+        one_bounce=options.one_bounce,
+    )
+    return LightmapBake(options, mesh, layout, texels, light, hidden_share, bake, meter, scene.lights, masks)
+
+
+def cover(scene: Scene, layout: LightmapLayout) -> tuple[MergedMesh, TexelSet]:
+    """Merges the scene and lists its covered texels."""
+    from irradia.bake.rasterise import rasterise
+
+    mesh = merge(scene, layout)
+    texels = rasterise(mesh, layout)
+    if len(texels.pixel) == 0:
+        raise InputError("nothing in the scene takes a lightmap", where=scene.name)
+    return mesh, texels
+
+
+def prepare(
+    scene: Scene, mesh: MergedMesh, layout: LightmapLayout, texels: TexelSet, options: BakeOptions
+) -> TexelLight:
+    """Uploads the scene and its texels."""
+    from irradia.scene.tangents import world_tangents
+    from irradia.transport.channels import Channels
+    from irradia.transport.frames import TangentFrames
+    from irradia.transport.moments import MOMENTS
+    from irradia.transport.normal_maps import NormalMaps
+    from irradia.transport.texel_light import TexelLight
+    from irradia.transport.world import World
+
+    world = World(scene, mesh, (layout.width_px, layout.height_px), robust=not options.fast_rays)
+    frames = normal_maps = None
+    moments = MOMENTS[MODES[options.directional].moments]() if options.directional else None
+    if options.normal_maps or (moments and moments.tangent_space):
+        frames = TangentFrames(world_tangents(scene, mesh, layout))
+        normal_maps = NormalMaps(scene, frames) if options.normal_maps else None
+    live = any(light.mode in ("mixed", "realtime") for light in scene.lights)
+    channels = Channels(live, options.indirect_clamp, moments)
+    return TexelLight(
+        world,
+        texels.pixel,
+        texels.samples,
+        options.nee_ratio,
+        channels,
+        normal_maps=normal_maps,
+        frames=frames if moments and moments.tangent_space else None,
+    )
+
+
+def lights_in_mode(lights: tuple[Light, ...], mode: Mode) -> tuple[Light, ...]:
+    """Punctual lights with the part that a bake of one mode gives them."""
+    if mode == "indirect":
+        return tuple(replace(light, mode="realtime") if light.mode == "baked" else light for light in lights)
+    if mode == "direct":
+        return tuple(replace(light, mode="baked") if light.mode != "off" else light for light in lights)
+    return lights
+
+
+def _warn_of_clamped(light: TexelLight, progress: Progress) -> None:
+    names = ", ".join(name or "an unnamed material" for name in light.world.clamped_materials)
+    if names:
+        progress.say(f"note: reflectance is limited to 0.98 in {names}")
+
+
+def _chosen_texels(texels: TexelSet, mesh: MergedMesh, selection: Selection) -> NDArray[np.bool_]:
+    chosen = np.ones(len(texels.pixel), np.bool_)
+    if selection.covered is not None:
+        chosen[:] = False
+        chosen[selection.covered] = True
+    if selection.instances is not None:
+        chosen &= selection.instances[mesh.instance[texels.triangle]]
+    return chosen
+
+
+def _queues(
+    light: TexelLight, chosen: NDArray[np.bool_], selection: Selection, progress: Progress
+) -> list[U32]:
+    """Lists of texels in order of importance."""
+    if selection.view is None:
+        return [_indices(chosen)]
+    with progress.stage("what the camera sees"):
+        seen = light.seen_from(selection.view)
+    progress.say(f"The camera sees {float(seen[chosen].mean()):.0%} of the texels: these come first.")
+    return [_indices(chosen & seen), _indices(chosen & ~seen)]
+
+
+def _indices(mask: NDArray[np.bool_]) -> U32:
+    return np.flatnonzero(mask).astype(np.uint32)
+
+
+def _rounds(
+    queues: list[U32], options: BakeOptions, selection: Selection, relative_error: Callable[[], F32]
+) -> Rounds:
+    if options.watches_noise:
+        samples = options.samples or MAX_SAMPLES
+        return AdaptiveRounds(queues, relative_error, noise=options.noise, samples=samples)
+    if options.samples is None:
+        return UniformRounds(queues, range(ROUND, MAX_SAMPLES + 1, ROUND))
+    ends = slice_bounds(options.samples, sum(len(queue) for queue in queues))
+    if selection.shard is None:
+        return UniformRounds(queues, ends)
+    number, count = selection.shard
+    if count > len(ends):
+        raise InputError(
+            f"expected at most {len(ends)} shards for this bake, found {count}",
+            where="--shard",
+            fix="More samples or texels can be divided among more machines.",
+        )
+    first, last = ((number + i) * len(ends) // count for i in (-1, 0))
+    return UniformRounds(queues, ends, first=first, last=last)
