@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from irradia.bake.directional_modes import MODES, SurfaceFrame, sh_linear
+from irradia.core.errors import InternalError
 
 from .light_fields import AXES, BITANGENT, NORMAL, TANGENT, both, lamp, sky, some_fields
 
@@ -155,6 +156,12 @@ def test_spherical_harmonics_hold_the_coefficients_that_they_claim():
     l11 = 0.488603 * (x @ field.light)
     np.testing.assert_allclose(maps["sh_l0"][0] / 0.282095, l00, rtol=1e-5)
     np.testing.assert_allclose(maps["sh_l0"][0] * (2 * maps["sh_x"][0] - 1) * 3 / 0.488603, l11, rtol=1e-4)
+
+
+def test_tangent_space_asks_for_tangents():
+    maps, plain = encoded("rnm", sky())
+    with pytest.raises(InternalError, match="tangents"):
+        MODES["rnm"].irradiance_over_pi(plain, maps, NORMAL, SurfaceFrame(NORMAL))
 
 
 def test_encoding_keeps_the_mean_light():

@@ -63,9 +63,10 @@ def test_red_points_along_u_green_up_the_image_blue_out(pixel, expected):
     np.testing.assert_allclose(mapped_normal(scene_of(pixel)), expected, atol=0.01)
 
 
-def test_mirrored_texture_mirrors_red():
-    normal = mapped_normal(scene_of((255, 128, 128), uv_sign=(-1, 1)))
-    np.testing.assert_allclose(normal, (-1, 0, 0), atol=0.01)
+@pytest.mark.parametrize(("pixel", "expected"), [((255, 128, 128), (-1, 0, 0)), ((128, 255, 128), (0, 1, 0))])
+def test_mirrored_texture_mirrors_red_and_leaves_green_up(pixel, expected):
+    normal = mapped_normal(scene_of(pixel, uv_sign=(-1, 1)))
+    np.testing.assert_allclose(normal, expected, atol=0.01)
 
 
 def test_scale_bends_less():

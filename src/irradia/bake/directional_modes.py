@@ -18,9 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.core.colour import LUMINANCE_WEIGHTS
+from irradia.core.errors import InternalError
 from irradia.scene.tangents import RNM_BASIS
 
 DirectionalName = Literal["dominant", "rnm", "sh", "mono-sh"]
+MomentsKind = Literal["sh", "mono", "rnm"]
 Maps = Mapping[str, NDArray]
 _LUMINANCE = np.array(LUMINANCE_WEIGHTS)
 _TINY = 1e-20
@@ -50,7 +52,7 @@ class DirectionalMode(Protocol):
         tangent_space: Whether its maps, and its normals, are relative to tangents.
     """
 
-    moments: Literal["sh", "mono", "rnm"]
+    moments: MomentsKind
     maps: tuple[str, ...]
     light_maps: tuple[str, ...]
     tangent_space: bool
@@ -86,9 +88,9 @@ class Dominant:
     (whose mean direction has length 1/2), since half a Lambert can't shade more than that.
     """
 
-    moments = "mono"
-    maps = ("direction",)
-    light_maps = ()
+    moments: MomentsKind = "mono"
+    maps: tuple[str, ...] = ("direction",)
+    light_maps: tuple[str, ...] = ()
     tangent_space = False
 
     def encode(self, plain: NDArray, moments: NDArray, normals: NDArray) -> dict[str, NDArray]:
@@ -115,9 +117,9 @@ class RadiosityNormalMapping:
     which neither weighting does by itself (an even sky would come out 37 % too bright, or 21 % too dark).
     """
 
-    moments = "rnm"
-    maps = ("rnm_0", "rnm_1", "rnm_2")
-    light_maps = maps
+    moments: MomentsKind = "rnm"
+    maps: tuple[str, ...] = ("rnm_0", "rnm_1", "rnm_2")
+    light_maps: tuple[str, ...] = maps
     tangent_space = True
 
     def encode(self, plain: NDArray, moments: NDArray, normals: NDArray) -> dict[str, NDArray]:
@@ -132,6 +134,8 @@ class RadiosityNormalMapping:
         self, plain: NDArray, maps: Maps, normal: NDArray, surface: SurfaceFrame
     ) -> NDArray:
         """See :class:`DirectionalMode`."""
+        if surface.tangent is None or surface.bitangent is None:
+            raise InternalError("rnm is decoded in tangent space, and this surface has no tangents")
         axes = (surface.tangent, surface.bitangent, surface.normal)
         total = np.zeros(np.broadcast_shapes(np.shape(plain), np.shape(normal)))
         for name, basis in zip(self.maps, RNM_BASIS, strict=True):
@@ -156,9 +160,9 @@ class SphericalHarmonics:
     around s adds at right angles to it, (1 − r)(1 + 2r) fits within 2 % for every width of the cap.
     """
 
-    moments = "sh"
-    maps = ("sh_l0", "sh_x", "sh_y", "sh_z")
-    light_maps = ("sh_l0",)
+    moments: MomentsKind = "sh"
+    maps: tuple[str, ...] = ("sh_l0", "sh_x", "sh_y", "sh_z")
+    light_maps: tuple[str, ...] = ("sh_l0",)
     tangent_space = False
 
     def encode(self, plain: NDArray, moments: NDArray, normals: NDArray) -> dict[str, NDArray]:
@@ -187,9 +191,9 @@ class MonoSphericalHarmonics:
     plain map's value in every channel.
     """
 
-    moments = "mono"
-    maps = ("sh_l0", "sh_direction")
-    light_maps = ("sh_l0",)
+    moments: MomentsKind = "mono"
+    maps: tuple[str, ...] = ("sh_l0", "sh_direction")
+    light_maps: tuple[str, ...] = ("sh_l0",)
     tangent_space = False
 
     def encode(self, plain: NDArray, moments: NDArray, normals: NDArray) -> dict[str, NDArray]:

@@ -49,7 +49,7 @@ def read_directional(document: GltfDocument, accessors: Accessors) -> Directiona
     if not extension.has("directional"):
         return None
     directional = extension.object("directional")
-    mode = directional.choice("mode", tuple(MODES))
+    mode = cast(DirectionalName, directional.choice("mode", tuple(MODES)))
     maps = directional.object("maps")
     pages = {}
     for name in MODES[mode].maps:
@@ -59,4 +59,4 @@ def read_directional(document: GltfDocument, accessors: Accessors) -> Directiona
     shapes = {array.shape for array in pages.values()}
     if len(shapes) > 1:
         raise InputError("expected maps of one size", where=maps.pointer)
-    return DirectionalMaps(cast(DirectionalName, mode), pages)
+    return DirectionalMaps(mode, pages)
