@@ -87,6 +87,18 @@ def test_a_moved_texel_has_the_chosen_places_of_the_other(objects_on_a_page):
             assert np.array_equal(found[kept], own[kept])
 
 
+def test_what_changes_on_the_device_stays_as_it_was_on_the_host(objects_on_a_page):
+    from irradia.transport.backend import mi
+
+    _, texels, upload = objects_on_a_page
+    kept = texels.pixel.copy(), texels.samples.code.copy(), texels.samples.first.copy()
+    subsamples = upload()
+    subsamples.copy(mi.UInt32([0, 1, 2]), mi.UInt32(5), mi.UInt32(0))
+    subsamples.move(mi.UInt32([3, 4]), mi.UInt32([7, 8]), [mi.UInt32(1)] * SUBSAMPLES)
+    for before, after in zip(kept, (texels.pixel, texels.samples.code, texels.samples.first), strict=True):
+        assert np.array_equal(before, after)
+
+
 def test_a_point_outside_takes_the_nearest_of_the_triangle():
     triangle = np.array([[0.0, 0.0], [4.0, 0.0], [0.0, 2.0]])
     points = np.array([[1.0, -3.0], [-2.0, 1.0], [-1.0, -1.0], [3.0, 2.5]])

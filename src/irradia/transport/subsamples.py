@@ -33,11 +33,12 @@ class Subsamples:
 
     def __init__(self, world: World, pixel: NDArray[np.uint32], samples: SubsampleSet) -> None:
         self.n_texels, self.count = len(pixel), SUBSAMPLES
-        self._pixel = mi.UInt32(pixel)
         self._world = world
+        # What is written to is copied: on the CPU a device array made of a NumPy array is that array.
+        self._pixel = mi.UInt32(pixel.copy())
         # Word by word, so that one sub-sample of neighbouring texels is read from neighbouring places.
-        self._code = mi.UInt32(samples.code.reshape(-1))
-        self._first = mi.UInt32(samples.first)
+        self._code = mi.UInt32(samples.code.flatten())
+        self._first = mi.UInt32(samples.first.copy())
         self._triangle = mi.UInt32(samples.triangle)
 
     def fetch(self, texel: mi.UInt32, subsample: mi.UInt32) -> tuple[mi.UInt32, mi.Point2f]:
