@@ -151,7 +151,7 @@ class Finisher:
             pixel=self._texels.pixel[self._valid],
             chart=region[self._valid],
             coverage=self._texels.coverage[self._valid],
-            samples=self._texels.samples.take(np.empty(0, np.int64)),
+            samples=self._texels.samples.take(np.empty(0, np.int64)),  # no denoiser asks for places
         )
         result = values.copy()
         result[self._valid] = denoiser(values[self._valid], kept)

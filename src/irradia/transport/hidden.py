@@ -149,7 +149,7 @@ def _probe(world: World, subsamples: Subsamples) -> NDArray[np.bool_]:
     k, last = mi.UInt32(0), dr.opaque(mi.UInt32, _PROBES.shape[1])
     while k < last:
         number = dr.gather(mi.UInt32, table, (texel & 1) * _PROBES.shape[1] + k)
-        met |= _meets_back(world, subsamples, texel, number, number)
+        met |= _meets_back(world, subsamples.point(world, texel, number), number)
         k += 1
     return np.array(met & (texel < subsamples.n_texels))
 
@@ -160,7 +160,8 @@ def _first_backs(world: World, subsamples: Subsamples, texel: mi.UInt32) -> NDAr
     bits, number = dr.zeros(mi.UInt32, dr.width(texel)), mi.UInt32(0)
     last = dr.opaque(mi.UInt32, subsamples.count)
     while number < last:
-        bits |= dr.select(_meets_back(world, subsamples, texel, number, number), mi.UInt32(1) << number, 0)
+        met = _meets_back(world, subsamples.point(world, texel, number), number)
+        bits |= dr.select(met, mi.UInt32(1) << number, 0)
         number += 1
     return np.array(bits)
 
@@ -180,9 +181,9 @@ def _count_backs(
     """How many of a sub-sample's rays ``begin`` to ``end`` meet a back first."""
     backs = dr.zeros(mi.Float, dr.width(texel))
     k, last = dr.opaque(mi.UInt32, begin), dr.opaque(mi.UInt32, end)
+    point = subsamples.point(world, texel, number)
     while k < last:
-        met = _meets_back(world, subsamples, texel, number, number * _MOST_RAYS + k)
-        backs += dr.select(met, 1.0, 0.0)
+        backs += dr.select(_meets_back(world, point, number * _MOST_RAYS + k), 1.0, 0.0)
         k += 1
     dr.eval(backs)
     return backs
@@ -220,11 +221,8 @@ def _count_inside(
     return inside, backs
 
 
-def _meets_back(
-    world: World, subsamples: Subsamples, texel: mi.UInt32, number: mi.UInt32, ray: mi.UInt32
-) -> mi.Bool:
-    """Whether one ray of a sub-sample first meets a back."""
-    point = subsamples.point(world, texel, number)
+def _meets_back(world: World, point: SurfacePoint, ray: mi.UInt32) -> mi.Bool:
+    """Whether one ray from a place first meets a back."""
     direction, above = _direction(point, ray)
     return world.meets_back(point.origin, direction, above, point.lod)
 
