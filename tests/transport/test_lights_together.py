@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from irradia.core.colour import linear_from_srgb
 from irradia.scene.merge import merge
 from irradia.scene.sky import sky
 from irradia.scene.types import Image, Light, Material, Scene, TextureRef
@@ -70,6 +71,31 @@ def test_tree_and_fixed_choice_estimate_the_same(sources):
     scene = scene_of(panels() if sources != "lamps" else [], lights, environment)
     fixed, tree = (irradiance_over_pi(chosen_by(scene, s), 0, 1 << 17) for s in ("fixed", "tree"))
     np.testing.assert_allclose(tree, fixed, rtol=0.02)
+
+
+def test_textured_panel_sends_what_its_picture_sends():
+    """Against the sum over the picture's pixels, each a small panel of its own."""
+    rng = np.random.default_rng(3)
+    pixels = np.dstack([rng.integers(0, 256, (8, 8))] * 3 + [np.full((8, 8), 255)]).astype(np.uint8)
+    height, width, splits = 0.5, 1.2, 64
+    glowing = Material(
+        "screen",
+        base_color=(0, 0, 0, 1),
+        metallic=0.0,
+        specular=0.0,
+        emission=(2.0, 2.0, 2.0),
+        emission_texture=TextureRef(0, nearest=True),
+    )
+    panel = Sheet(glowing, y=height, width=width, depth=width, up=False)
+    scene = replace(scene_of([panel]), images=(Image("picture", pixels),))
+    found = irradiance_over_pi(world_of(scene), 0, 1 << 16)
+
+    t = (np.arange(splits) + 0.5) / splits
+    u, v = np.meshgrid(t, t)  # a sheet's texture runs along x and z, from their smallest corner
+    radiance = 2.0 * linear_from_srgb(pixels[(v * 8).astype(int), (u * 8).astype(int), 0] / 255.0)
+    distance2 = ((u - 0.5) * width) ** 2 + ((v - 0.5) * width) ** 2 + height**2
+    expected = (radiance * height**2 / distance2**2).sum() * (width / splits) ** 2 / np.pi
+    np.testing.assert_allclose(found, expected, rtol=0.01)
 
 
 def test_single_sources_sum_to_all_of_them_together():
