@@ -53,15 +53,15 @@ def look_around(
     Yields:
         Some origins at a time, so that memory is bounded, and what they see, (n, D) each.
     """
-    d = mi.Vector3f(np.ascontiguousarray(directions.T, np.float32))
+    d = mi.Vector3f(*_columns(directions))
     n_directions = len(directions)
-    step = max(_RAYS_PER_LAUNCH // n_directions, 1)
+    step, per_origin = max(_RAYS_PER_LAUNCH // n_directions, 1), dr.opaque(mi.UInt32, n_directions)
     for first in range(0, len(origins), step):
         part = slice(first, min(first + step, len(origins)))
-        o = mi.Point3f(np.ascontiguousarray(origins[part].T, np.float32))
+        o = mi.Point3f(*_columns(origins[part]))
         lane = dr.arange(mi.UInt32, (part.stop - first) * n_directions)
-        origin = lane // n_directions
-        chosen = dr.gather(mi.Vector3f, d, lane - origin * n_directions)
+        origin = lane // per_origin
+        chosen = dr.gather(mi.Vector3f, d, lane - origin * per_origin)
         found = _first_surface(world, dr.gather(mi.Point3f, o, origin), chosen)
         yield part, _to_host(found, (part.stop - first, n_directions))
 
@@ -71,8 +71,8 @@ def look_along(world: World, origins: NDArray[np.float32], directions: NDArray[n
     if len(origins) == 0:
         none = np.zeros(0, np.float32)
         return Sight(none, none.astype(bool), none)
-    o = mi.Point3f(np.ascontiguousarray(origins.T, np.float32))
-    d = mi.Vector3f(np.ascontiguousarray(directions.T, np.float32))
+    o = mi.Point3f(*_columns(origins))
+    d = mi.Vector3f(*_columns(directions))
     return _to_host(_first_surface(world, o, d), (len(origins),))
 
 
@@ -97,19 +97,20 @@ def gather_sh(
     """
     n_blocks = -(-n_samples // _SAMPLES_PER_BLOCK)
     step = max(_LANES_PER_LAUNCH // n_blocks, 1)
+    per_probe, total = dr.opaque(mi.UInt32, n_blocks), dr.opaque(mi.UInt32, n_samples)
     for first in range(0, len(origins), step):
         part = slice(first, min(first + step, len(origins)))
-        o = mi.Point3f(np.ascontiguousarray(origins[part].T, np.float32))
+        o = mi.Point3f(*_columns(origins[part]))
         lane = dr.arange(mi.UInt32, (part.stop - first) * n_blocks)
-        probe = lane // n_blocks
-        block = lane - probe * n_blocks
+        probe = lane // per_probe
+        block = lane - probe * per_probe
         stream = hash_u32((probe + dr.opaque(mi.UInt32, first)) ^ hash_u32(dr.opaque(mi.UInt32, seed)))
-        last = dr.minimum((block + 1) * _SAMPLES_PER_BLOCK, dr.opaque(mi.UInt32, n_samples))
+        last = dr.minimum((block + 1) * _SAMPLES_PER_BLOCK, total)
         origin = dr.gather(mi.Point3f, o, probe)
         sums = _gather_loop(world, origin, block * _SAMPLES_PER_BLOCK, last, stream, cache)
-        totals = [dr.block_sum(channel, n_blocks) for colour in sums for channel in colour]
-        dr.eval(totals)
-        stacked = np.stack([np.array(total) for total in totals], axis=1) / np.float32(n_samples)
+        dr.eval(sums)  # all in one launch: each reduction would start one of its own
+        channels = [dr.block_sum(channel, n_blocks) for colour in sums for channel in colour]
+        stacked = np.stack([np.array(channel) for channel in channels], axis=1) / np.float32(n_samples)
         yield part, stacked.reshape(-1, N_COEFFICIENTS, 3)
 
 
@@ -184,6 +185,11 @@ def _first_surface(
         o = dr.select(filters, world.geometry.step_past(o, direction, hit.t), o)
         active = filters & (sky > 1e-3)
     return distance, back, sky
+
+
+def _columns(rows: NDArray[np.float32]) -> list[mi.Float]:
+    """x, y and z of (N, 3) on the device, each for itself: split there, N would be part of the kernel."""
+    return [mi.Float(np.ascontiguousarray(column, np.float32)) for column in rows.T]
 
 
 def _to_host(found: tuple[mi.Float, mi.Bool, mi.Float], shape: tuple[int, ...]) -> Sight:

@@ -53,7 +53,7 @@ def test_probes_in_walls_do_not_count():
     assert weight[0, index[0] == 5].sum() == pytest.approx(1.0)
 
 
-def test_octree_finds_the_finest_cell():
+def test_octree_finds_the_cell_of_either_level():
     """One coarse cell at x < 1, and at x ≥ 1 one whose lowest child is all there is."""
     cells = np.array([(0, 0, 0, 0), (2, 0, 0, 1)], np.int32)
     corner = np.array([(i & 1, i >> 1 & 1, i >> 2 & 1) for i in range(8)], np.float32)

@@ -159,3 +159,20 @@ def test_glass_lets_sight_and_sky_through():
     assert np.isinf(sight.distance[0])
     assert not sight.back[0]
     np.testing.assert_allclose(sight.sky, 0.8, atol=0.05)
+
+
+def test_one_kernel_gathers_any_number_of_probes_and_samples():
+    """A launch each; the second and third find the first's kernel."""
+    from irradia.transport.backend import dr
+    from irradia.transport.probe_light import gather_sh
+    from irradia.transport.world import World
+
+    scene = scene_of(centred_box((4, 3, 5)).inside_out(), lights=(Light("point", (5.0,) * 3),))
+    world = World(scene, merge(scene))
+    with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
+        dr.kernel_history_clear()
+        for n_probes, n_samples in ((5, 64), (5, 500), (90, 130)):
+            list(gather_sh(world, np.zeros((n_probes, 3), np.float32), n_samples, seed=1))
+        history = [entry for entry in dr.kernel_history() if entry["type"] == dr.KernelType.JIT]
+    assert len(history) == 3
+    assert len({entry["hash"] for entry in history}) == 1

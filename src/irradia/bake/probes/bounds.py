@@ -1,4 +1,4 @@
-"""The space that probes fill: a room's inside, or all of an open scene."""
+"""The space that probes fill: a room's inside, or an open scene and a little around it."""
 
 from __future__ import annotations
 
@@ -18,18 +18,21 @@ _STEPS = 16  # places an axis where the inside is looked for
 _DIRECTIONS = 64
 _ENCLOSED = 0.5  # share of directions in which somebody inside sees fronts: an open roof is no lid
 _FEW_BACKS = 0.1
+_AROUND = 0.1  # of an open scene's longest side: room for what moves, but none under the ground
 
 
 def probe_box(world: World, mesh: MergedMesh) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Lowest and highest corner, metres.
 
     Where the scene is a room, what lies around its walls (a street, the ground it stands on) is left
-    out: the box then holds all places that see mostly fronts of surfaces.
+    out: the box then holds all places that see mostly fronts of surfaces. An open scene gets a margin
+    at its sides and above.
     """
     corners = mesh.positions[np.unique(mesh.indices)].astype(np.float64)
     low, high = corners.min(axis=0), corners.max(axis=0)
     if find_interior_view(mesh) is None:
-        return low, high
+        margin = _AROUND * float((high - low).max())
+        return low - (margin, 0.0, margin), high + margin
     size = (high - low) / _STEPS
     places = _cell_centres(low, size)
     inside = places[_is_inside(world, places.astype(np.float32))]

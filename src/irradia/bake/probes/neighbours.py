@@ -69,7 +69,7 @@ def _in_grid(grid: ProbeGrid, points: F64) -> tuple[I64, F64]:
 def _in_octree(probes: ProbeSet, tree: ProbeOctree, points: F64) -> tuple[I64, F64]:
     index, weight = np.full((len(points), N_AROUND), NOBODY), np.zeros((len(points), N_AROUND))
     unfound = np.ones(len(points), np.bool_)
-    for level in np.unique(tree.cells[:, 3])[::-1]:
+    for level in np.unique(tree.cells[:, 3]):
         rows = np.flatnonzero(tree.cells[:, 3] == level)
         keys = _key(tree.cells[rows, :3])
         order = np.argsort(keys)
