@@ -19,7 +19,7 @@ from irradia.core import silent_progress
 from irradia.core.errors import InputError
 from irradia.scene.types import Light, Material
 
-from .lit_scenes import lit
+from .lit_scenes import bake, lit
 from .quads import Traced, quad, quad_scene
 
 pytestmark = pytest.mark.usefixtures("cpu_device")
@@ -208,3 +208,19 @@ def test_the_same_seed_gives_the_same_bytes_and_another_other_ones():
 def test_no_samples_are_bad_input():
     with pytest.raises(InputError, match="samples"):
         ShadowMaskOptions(samples=0)
+
+
+def test_a_bake_of_a_mixed_light_holds_its_mask_and_not_its_direct_light():
+    black = Material(base_color=(0.0, 0.0, 0.0, 1.0), metallic=0.0, specular=0.0)
+    sun = replace(_DOWN, intensity=(np.pi, np.pi, np.pi), angle_deg=20.0)
+    scene = quad_scene(_FLOOR, _LID, materials=(black,), lights=(sun,), mapped=1)
+    mixed = bake(scene, 64, 64, seams=False)
+    baked = bake(replace(scene, lights=(replace(sun, mode="baked"),)), 64, 1024, seams=False)
+    assert mixed.shadow_channels == (0,)
+    assert mixed.shadows is not None
+    assert mixed.pages.max() == 0.0
+    assert baked.shadows is None
+    inside = baked.coverage > 0.0
+    difference = mixed.shadows[inside, 0] - baked.pages[inside, 0]
+    assert np.abs(difference).mean() < 5e-3
+    assert difference.mean() == pytest.approx(0.0, abs=1e-3)
