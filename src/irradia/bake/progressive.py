@@ -104,6 +104,7 @@ class ProgressiveBake:
 
     Attributes:
         launches: Kernel launches of the latest pass.
+        before_the_last_epoch: Asked which texels get the last epoch's rays; None for all.
         keep_slices: A list to which every round's sums are added before they are folded, or None.
     """
 
@@ -123,6 +124,7 @@ class ProgressiveBake:
         self.light, self.plan, self.rounds, self.meter, self.texels = light, plan, rounds, meter, texels
         self.launches = 0
         self.keep_slices: list[dict[str, NDArray]] | None = None
+        self.before_the_last_epoch: Callable[[], U32 | None] | None = None
         self.progression = Progression(light.empty_sums(), light.empty_sums(), light.empty_sums())
         self._seed, self._samples, self._time_s = seed, samples, time_s
         self._reflectance = light.reflectance()
@@ -225,6 +227,10 @@ class ProgressiveBake:
     def _last_epoch(self, stage: Stage) -> Iterator[Pass]:
         """Rounds with a frozen cache."""
         now = self.progression
+        if self.before_the_last_epoch is not None:
+            chosen = self.before_the_last_epoch()
+            if chosen is not None:
+                self.rounds.keep_only(chosen)
         cache = self._cache(self._known_before) if self.plan.cached else self._unread
         while (turn := self.rounds.next()) is not None:
             drawn = int(np.array(now.part.rays)[turn.texels[0]])
@@ -323,6 +329,10 @@ class ProgressiveBake:
         return np.stack(
             [self.light.to_host(sums.mean(c)) for c in range(channels.first_moment, channels.count)], axis=1
         )
+
+    def coarse(self) -> TexelColour:
+        """E/π before the last epoch: the same random numbers give the same noise again."""
+        return self._known_before
 
     def live_light(self) -> TexelColour:
         """First bounce of the lights that are lit live: in no map, but surfaces shine with it."""

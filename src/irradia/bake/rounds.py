@@ -71,6 +71,10 @@ class Rounds(Protocol):
         """Whether a queue has all its rays."""
         ...
 
+    def keep_only(self, texels: U32) -> None:
+        """Leaves all other texels out."""
+        ...
+
     def state(self) -> dict[str, NDArray]:
         """What :meth:`restore` needs."""
         ...
@@ -136,6 +140,10 @@ class UniformRounds:
     def finished(self, queue: int) -> bool:
         """See :class:`Rounds`."""
         return self._position[queue] >= self._last or len(self._queues[queue]) == 0
+
+    def keep_only(self, texels: U32) -> None:
+        """See :class:`Rounds`."""
+        self._queues = [np.intersect1d(queue, texels) for queue in self._queues]
 
     def state(self) -> dict[str, NDArray]:
         """See :class:`Rounds`."""
@@ -213,6 +221,11 @@ class AdaptiveRounds:
     def finished(self, queue: int) -> bool:
         """See :class:`Rounds`."""
         return len(self._active[queue]) == 0
+
+    def keep_only(self, texels: U32) -> None:
+        """See :class:`Rounds`."""
+        self._queues = [np.intersect1d(queue, texels) for queue in self._queues]
+        self._active = [np.intersect1d(active, texels) for active in self._active]
 
     def state(self) -> dict[str, NDArray]:
         """See :class:`Rounds`."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from irradia.bake.directional_modes import MODES
 from irradia.bake.lightmap import LightmapBake, Selection
 from irradia.bake.options import MAX_SAMPLES, BakeOptions, Mode
-from irradia.bake.plan import plan_epochs, slice_bounds
+from irradia.bake.plan import lanes_per_texel, plan_epochs, rays_per_pass, slice_bounds
 from irradia.bake.progressive import ProgressiveBake
 from irradia.bake.rounds import ROUND, AdaptiveRounds, Rounds, UniformRounds
 from irradia.bake.shadow_mask import plan_shadow_mask
@@ -52,7 +52,9 @@ def set_up(
     chosen = valid & _chosen_texels(texels, mesh, selection)
     traced = _indices(valid if options.cached else chosen)
     with progress.stage("kernels"):
-        light.warm_up(traced, light.cache_of_nothing(options.cached, one_bounce=options.one_bounce))
+        per_texel = lanes_per_texel(len(traced), rays_per_pass(len(traced)), light.wanted_lanes)
+        nothing = light.cache_of_nothing(options.cached, one_bounce=options.one_bounce)
+        light.warm_up(light.lanes(traced, per_texel), nothing)
     meter = NoiseMeter(texels.pixel, texels.chart, (texels.n_pages, texels.height_px, texels.width_px))
     queues = _queues(light, chosen, selection, progress)
     samples = options.planned_samples

@@ -45,6 +45,9 @@ if TYPE_CHECKING:
 )
 @options.lighting_options
 @options.scene_options
+@options.map_options
+@click.option("--only", multiple=True, metavar="NAME", help="Bake this object alone; * and ? match.")
+@click.option("--update", is_flag=True, help="Bake only what has changed since the last --update here.")
 @click.option("--fast-rays", is_flag=True, help="Faster intersection that may miss edges.")
 @click.option("--no-denoise", is_flag=True, help="Leave the noise in.")
 @click.option("--no-report", is_flag=True, help="Write no report, and render no reference for it.")
@@ -101,6 +104,16 @@ def make_job(
     mode: str,
     view_first: str | None,
     shard: tuple[int, int] | None,
+    only: tuple[str, ...],
+    update: bool,
+    directional: str | None,
+    normal_maps: bool,
+    no_seams: bool,
+    probes: str | None,
+    probe_samples: int,
+    formats: str,
+    material_override: tuple[str, ...],
+    ies: tuple[str, ...],
     resume: bool,
     checkpoint_s: float,
     resolution: int | None,
@@ -120,8 +133,10 @@ def make_job(
 ) -> BakeJob:
     """The command line as a job."""
     from irradia.bake.lightmap import BakeOptions
+    from irradia.bake.probes.options import ProbeOptions
     from irradia.cli.bake_job import BakeJob
     from irradia.cli.bake_views import ViewOptions
+    from irradia.export.map_files import parse_formats
     from irradia.scene.lightmap_uv.options import LayoutOptions
     from irradia.scene.load import LoadOptions
 
@@ -139,6 +154,9 @@ def make_job(
             indirect_clamp=indirect_clamp,
             integrator=integrator,  # type: ignore[arg-type]
             mode=mode,  # type: ignore[arg-type]
+            directional=directional,  # type: ignore[arg-type]
+            normal_maps=normal_maps,
+            seams=not no_seams,
             seed=seed,
             fast_rays=fast_rays,
             denoise=not no_denoise,
@@ -146,6 +164,14 @@ def make_job(
         views=None if no_report else ViewOptions(reference_spp, seed=seed, fast_rays=fast_rays),
         compatible=compatible,
         shard=shard,
+        only=tuple(name for part in only for name in part.split(",") if name),
+        update=update,
+        overrides=material_override,
+        ies=ies,
+        probes=None
+        if probes is None
+        else ProbeOptions.parse(probes, samples=probe_samples, seed=seed, fast_rays=fast_rays),
+        formats=parse_formats(formats),
         resume=resume,
         checkpoint_s=checkpoint_s,
         view_first=view_first,

@@ -16,7 +16,7 @@ from irradia.core import provenance
 from irradia.core.colour import automatic_exposure_ev, picture_srgb8
 from irradia.core.files import write_text_atomic
 from irradia.core.progress import Progress
-from irradia.formats.lightmap import LightmapFile, make_lightmap, page_path, write_lightmap
+from irradia.formats.lightmap import LightmapFile, make_lightmap, page_path
 from irradia.scene.types import Scene
 
 
@@ -33,18 +33,24 @@ def write_products(
         start: ``time.perf_counter()`` when the command began.
     """
     from irradia.export import write_baked_glb
+    from irradia.export.map_files import write_maps
+    from irradia.export.shadow_mask_extension import BakedShadows
 
     origin = _provenance(job, baked.scene, time.perf_counter() - start)
-    lightmap = make_lightmap(baked.result.pages, baked.result.coverage, origin.reproducible())
+    result = baked.result
+    lightmap = make_lightmap(result.pages, result.coverage, origin.reproducible(), _texel_channels(baked))
     with progress.stage("files"):
-        write_lightmap(folder / "lightmap.exr", lightmap)
+        write_maps(folder, lightmap, job.formats)
         _write_previews(folder / "preview.png", lightmap)
+        _write_companions(folder, job, baked, origin.reproducible())
         write_baked_glb(
             folder / "scene.baked.glb",
             baked.scene,
             baked.layout,
-            baked.result.pages,
+            result.pages,
             compatible=job.compatible,
+            directional=result.directional,
+            shadows=None if result.shadows is None else BakedShadows(result.shadows, result.shadow_channels),
         )
     record = bake_record(baked, lightmap, progress, origin.to_dict())
     if baked.view is not None:
@@ -55,6 +61,37 @@ def write_products(
         write_report(folder / "report.html", report_data(job, baked, record))
     write_text_atomic(folder / "bake.json", json.dumps(record, indent=2, allow_nan=False) + "\n")
     return record
+
+
+def _texel_channels(baked: Baked) -> dict[str, NDArray]:
+    """What is known of texels beside their light, as pages."""
+    result, texels = baked.result, baked.result.texels
+    channels: dict[str, NDArray] = {
+        "validity": texels.to_pages((1.0 - result.hidden_share).astype(np.float16)),
+        "samples": texels.to_pages(result.sample_count),
+    }
+    if baked.update is not None:
+        channels["stale"] = texels.to_pages(baked.update.stale.astype(np.float16))
+    return channels
+
+
+def _write_companions(folder: Path, job: BakeJob, baked: Baked, origin: dict[str, Any]) -> None:
+    """Directional maps, shadow mask, probes, and what the next update needs."""
+    from irradia.bake.rebake import write_memory
+    from irradia.cli.bake_update import MEMORY
+    from irradia.export.directional_files import write_directional_files
+    from irradia.export.probe_files import write_probe_files
+    from irradia.formats.shadow_mask import write_shadow_mask
+
+    result = baked.result
+    if result.directional is not None:
+        write_directional_files(folder, result.directional, result.coverage, job.formats, origin)
+    if result.shadows is not None:
+        write_shadow_mask(folder / "shadow_mask.png", result.shadows)
+    if baked.probes is not None:
+        write_probe_files(folder, baked.probes)
+    if baked.memory is not None:
+        write_memory(folder / MEMORY, baked.memory)
 
 
 def bake_record(
@@ -79,6 +116,14 @@ def bake_record(
             "utilisation": float(covered.mean()),
             "texels_per_metre": baked.layout.texels_per_metre,
         },
+        "shadow_mask": _shadow_channels(baked),
+        "probes": None if baked.probes is None else len(baked.probes.positions),
+        "update": None
+        if baked.update is None
+        else {
+            "rebaked_share": float(baked.update.rebake.mean()),
+            "stale_share": float(baked.update.stale.mean()),
+        },
         "stats": stats,
         "bake_s": round(baked.bake_s, 4),
         "stage_s": {name: round(seconds, 4) for name, seconds in progress.seconds.items()},
@@ -86,6 +131,18 @@ def bake_record(
         "against_reference": _against_reference(baked),
         "notes": [*baked.scene.notes, *baked.layout.notes],
         "provenance": origin,
+    }
+
+
+def _shadow_channels(baked: Baked) -> dict[str, int] | None:
+    """The channel of every light that has one, by its name or number."""
+    result = baked.result
+    if result.shadows is None:
+        return None
+    return {
+        light.name or f"light {index}": channel
+        for index, (light, channel) in enumerate(zip(result.lights, result.shadow_channels, strict=True))
+        if channel is not None
     }
 
 

@@ -5,27 +5,46 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from irradia import __version__
 from irradia.bake.lightmap import BakeOptions, LightmapBake, LightmapResult, Selection
+from irradia.bake.occlusion import OcclusionOptions
+from irradia.bake.probes.options import ProbeOptions
+from irradia.bake.rebake import Memory, Update
 from irradia.bake.shards import Shard
 from irradia.bake.texels import TexelSet
+from irradia.cli.bake_update import Revision
 from irradia.cli.bake_views import View, ViewOptions
 from irradia.cli.lighting import LightOptions, light_scene
 from irradia.cli.staging import staged_folder
 from irradia.core import provenance
 from irradia.core.device import DeviceChoice
 from irradia.core.progress import Progress
+from irradia.formats.probes import ProbeSet
 from irradia.scene.layout import LightmapLayout
 from irradia.scene.lightmap_uv.options import LayoutOptions
 from irradia.scene.load import LoadOptions
 from irradia.scene.types import Scene
 
 # What a bake may leave in its folder; what is left of an earlier run must not stand beside it.
-PRODUCTS = ("lightmap*.exr", "preview*.png", "view.png", "scene.baked.glb", "bake.json", "report.html")
+PRODUCTS = (
+    "lightmap*.exr",
+    "lightmap*.hdr",
+    "lightmap*.png",
+    "lightmap*.ktx2",
+    "occlusion*.*",
+    "shadow_mask*.png",
+    "probes.*",
+    "preview*.png",
+    "view.png",
+    "scene.baked.glb",
+    "bake.json",
+    "bake.memory",
+    "report.html",
+)
 
 
 @dataclass(frozen=True)
@@ -41,6 +60,13 @@ class BakeJob:
         checkpoint_s: How often that state is saved.
         view_first: Camera whose texels are finished first, as ``--camera`` names it.
         only: Names or patterns of the objects to bake.
+        update: Bakes only what has changed since the last bake into ``out``, and keeps what the next
+            such bake needs.
+        overrides: Materials to replace; see :mod:`irradia.scene.material_override_file`.
+        ies: Measured distributions for lights; see :mod:`irradia.scene.ies_option`.
+        probes: Probes to bake as well, or None.
+        formats: Of the maps; names of :mod:`irradia.export.map_files`.
+        occlusion: Bakes ambient occlusion in place of light.
         shard: (i, n): the part of the samples that this machine traces.
     """
 
@@ -56,6 +82,12 @@ class BakeJob:
     checkpoint_s: float = 60.0
     view_first: str | None = None
     only: tuple[str, ...] = ()
+    update: bool = False
+    overrides: tuple[str, ...] = ()
+    ies: tuple[str, ...] = ()
+    probes: ProbeOptions | None = None
+    formats: tuple[str, ...] = ("exr",)
+    occlusion: OcclusionOptions | None = None
     shard: tuple[int, int] | None = None
     device: DeviceChoice = "auto"
     threads: int | None = None
@@ -78,6 +110,9 @@ class Baked:
         bake_s: Wall time from opening the file to the finished pages.
         view: For the report, rendered after that.
         complete: Whether the bake came to its end rather than being stopped.
+        probes: Where they were asked for.
+        memory: For the next ``--update``, where there is to be one.
+        update: What an edit has asked for.
     """
 
     scene: Scene
@@ -86,6 +121,9 @@ class Baked:
     bake_s: float
     view: View | None
     complete: bool
+    probes: ProbeSet | None = None
+    memory: Memory | None = None
+    update: Update | None = None
 
 
 @dataclass(frozen=True)
@@ -126,12 +164,28 @@ def run_bake(job: BakeJob, progress: Progress, shards: Sequence[Shard] = ()) -> 
     return BakeSummary(record, files, baked.complete)
 
 
-def open_scene(spec: str, load: LoadOptions, light: LightOptions, progress: Progress) -> Scene:
+def open_scene(
+    spec: str,
+    load: LoadOptions,
+    light: LightOptions,
+    progress: Progress,
+    *,
+    overrides: Sequence[str] = (),
+    ies: Sequence[str] = (),
+) -> Scene:
     """The scene as it will be lit; says what the user should know of it."""
+    from irradia.scene.ies_option import apply_ies
     from irradia.scene.load import load_scene
+    from irradia.scene.material_override import override_materials
+    from irradia.scene.material_override_file import read_material_overrides
 
     with progress.stage("scene"):
-        scene = light_scene(load_scene(spec, load), light)
+        scene = load_scene(spec, load)
+        if overrides:
+            scene = override_materials(scene, read_material_overrides(overrides))
+        if ies:
+            scene = apply_ies(scene, ies)
+        scene = light_scene(scene, light)
     for note in scene.notes:
         progress.say(f"note: {note}")
     return scene
@@ -160,7 +214,7 @@ def _prepare(job: BakeJob, progress: Progress) -> tuple[Scene, LightmapLayout, L
     from irradia.bake.lightmap import start_bake
     from irradia.scene.lightmap_uv import layout_lightmap
 
-    scene = open_scene(job.scene, job.load, job.light, progress)
+    scene = open_scene(job.scene, job.load, job.light, progress, overrides=job.overrides, ies=job.ies)
     layout = layout_lightmap(scene, job.layout, progress)
     for note in layout.notes:
         progress.say(note)
@@ -174,27 +228,44 @@ def _bake(job: BakeJob, progress: Progress, shards: Sequence[Shard]) -> Baked:
     start = time.perf_counter()
     scene, layout, bake = _prepare(job, progress)
     same = identity(job, scene, bake.texels)
+    revision = Revision.begin(job, scene, bake, progress)
     complete = True
     if shards:
         join(bake.bake, shards, same)
     else:
         complete = trace(bake, job, same, progress)
-    result = bake.result(progress)
+    result = bake.result(progress, revision.merged(bake.estimate()))
+    scene = replace(scene, lights=result.lights)
+    probes = _probes(job, scene, layout, result, progress) if complete else None
     bake_s = time.perf_counter() - start
-    if job.views is None or not complete:
-        return Baked(scene, layout, result, bake_s, None, complete)
+    baked = Baked(scene, layout, result, bake_s, None, complete, probes, revision.memory(), revision.update)
+    if job.views is None or not complete or job.bake.mode == "direct":
+        return baked
     from irradia.cli.bake_views import render_view
     from irradia.transport.render import BakedLight
 
-    view = render_view(scene, BakedLight(layout, result.pages), job.views, progress)
-    return Baked(scene, layout, result, bake_s, view, complete)
+    shown = result.pages if result.all_light is None else result.all_light
+    return replace(baked, view=render_view(scene, BakedLight(layout, shown), job.views, progress))
+
+
+def _probes(
+    job: BakeJob, scene: Scene, layout: LightmapLayout, result: LightmapResult, progress: Progress
+) -> ProbeSet | None:
+    if job.probes is None:
+        return None
+    from irradia.bake.probes import bake_probes
+
+    pages = result.pages if result.all_light is None else result.all_light
+    return bake_probes(scene, layout, pages, job.probes, progress)
 
 
 def _selection(job: BakeJob, scene: Scene) -> Selection:
     from irradia.scene.framing import camera_from_spec
+    from irradia.scene.selection import select_instances
 
     view = None if job.view_first is None else camera_from_spec(scene, job.view_first)
-    return Selection(view=view, shard=job.shard)
+    only = select_instances(scene, job.only) if job.only else None
+    return Selection(view=view, instances=only, shard=job.shard)
 
 
 def identity(job: BakeJob, scene: Scene, texels: TexelSet) -> dict[str, Any]:

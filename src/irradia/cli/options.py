@@ -110,6 +110,50 @@ def budget_options(function: F) -> F:
     )
 
 
+def map_options(function: F) -> F:
+    """Which maps, in which formats, and what goes into them beside the scene's file."""
+    return _apply(
+        function,
+        click.option(
+            "--directional",
+            type=click.Choice(["dominant", "rnm", "sh", "mono-sh"]),
+            help="Maps of the light's direction as well, for normal maps.",
+        ),
+        click.option("--normal-maps", is_flag=True, help="Receive light on normal-mapped normals."),
+        click.option("--no-seams", is_flag=True, help="Leave seams between charts as they are."),
+        click.option(
+            "--probes", metavar="HOW", help="Light probes as well: grid:METRES, random:COUNT or auto."
+        ),
+        click.option(
+            "--probe-samples",
+            type=click.IntRange(1, MAX_SAMPLES),
+            default=1024,
+            show_default=True,
+            help="Rays per probe.",
+        ),
+        click.option(
+            "--format",
+            "formats",
+            default="exr",
+            show_default=True,
+            metavar="LIST",
+            help="Of the maps, separated by commas: exr, hdr, rgbm, ktx2-half … (docs/formats.md).",
+        ),
+        click.option(
+            "--material-override",
+            multiple=True,
+            metavar="FILE|NAME:CHANNEL=VALUE",
+            help="Albedo, emission or opacity of materials whose shader isn't glTF's.",
+        ),
+        click.option(
+            "--ies",
+            multiple=True,
+            metavar="[LIGHT=]FILE",
+            help="Measured light of one lamp, or of all.",
+        ),
+    )
+
+
 def sample_limit(samples: int | None, time_s: float | None, noise: float | None) -> int | None:
     """The number of samples that was asked for, or that is meant where no limit was given at all."""
     return DEFAULT_SAMPLES if samples is None and time_s is None and noise is None else samples

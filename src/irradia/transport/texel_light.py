@@ -130,9 +130,9 @@ class TexelLight:
         """How many lanes keep the device busy."""
         return _LANES[device.kind]
 
-    def warm_up(self, texels: NDArray[np.uint32], cache: LightCache | None) -> None:
+    def warm_up(self, lanes: Lanes, cache: LightCache | None) -> None:
         """Compiles the kernels by running them with no rays."""
-        self.add_rays(self.empty_sums(), self.lanes(texels), Draw(0, 0, 0, 0), cache)
+        self.add_rays(self.empty_sums(), lanes, Draw(0, 0, 0, 0), cache)
         self.wait()
 
     def cache_of_nothing(self, cached: bool, *, one_bounce: bool) -> LightCache | None:
