@@ -33,7 +33,7 @@ from pathlib import Path
 
 import numpy as np
 
-from irradia.bake.lightmap import cover
+from irradia.bake.setup import cover
 from irradia.core.device import available_threads, cpu_name
 from irradia.core.provenance import sha256_bytes, source_commit
 from irradia.metrics import mean_ratio, relmse_between_means

@@ -23,7 +23,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 import numpy as np
 
-from irradia.bake.lightmap import cover
+from irradia.bake.setup import cover
 from irradia.core import write_text_atomic
 from irradia.core.device import available_threads
 from irradia.core.provenance import source_commit

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from irradia.bake.lightmap import cover
+from irradia.bake.setup import cover
 from irradia.bake.texels import TexelSet
 from irradia.core.progress import silent_progress
 from irradia.scene.lightmap_uv import LayoutOptions, layout_lightmap
