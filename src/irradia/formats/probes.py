@@ -179,9 +179,9 @@ def check_structure(structure: ProbeGrid | ProbeOctree | None, n: int, where: st
             raise InputError("expected an octree's cells to have a size", where=where)
 
 
-def _arrays(probes: ProbeSet) -> dict[str, NDArray]:
-    arrays: dict[str, NDArray] = {
-        "version": np.int32(VERSION),
+def _arrays(probes: ProbeSet) -> dict[str, Any]:
+    arrays: dict[str, Any] = {
+        "version": np.array(VERSION, np.int32),
         "light": np.array(probes.light),
         "provenance": np.array(json.dumps(dict(probes.provenance), sort_keys=True)),
         "state": probes.state,
@@ -190,7 +190,7 @@ def _arrays(probes: ProbeSet) -> dict[str, NDArray]:
         arrays[name] = np.asarray(getattr(probes, name), "<f4")
     match probes.structure:
         case ProbeGrid(origin, spacing, shape):
-            arrays |= {"grid_origin": origin, "grid_spacing": spacing, "grid_shape": np.int32(shape)}
+            arrays |= {"grid_origin": origin, "grid_spacing": spacing, "grid_shape": np.array(shape, np.int32)}
         case ProbeOctree(origin, size_m, cells, corners):
             arrays |= {"octree_origin": origin, "octree_size": np.float32(size_m)}
             arrays |= {"octree_cells": cells, "octree_corners": corners}

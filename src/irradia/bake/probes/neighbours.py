@@ -101,10 +101,10 @@ def _trilinear(share: F64) -> F64:
 
 def _nearest(probes: ProbeSet, points: F64) -> tuple[I64, F64]:
     """Eight nearest by Franke and Little's weights, which reach 0 where the ninth would come in."""
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
     n = min(N_AROUND + 1, len(probes))
-    distance, index = cKDTree(probes.positions).query(points, k=n)
+    distance, index = KDTree(probes.positions).query(points, k=n)
     distance, index = distance.reshape(len(points), n), index.reshape(len(points), n).astype(np.int64)
     radius = distance[:, -1:] * (1.0 if n > N_AROUND else 1.1) + 1e-9
     weight = (np.maximum(radius - distance, 0.0) / (radius * np.maximum(distance, 1e-6 * radius))) ** 2

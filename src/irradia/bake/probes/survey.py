@@ -120,7 +120,7 @@ def _offsets(world: World, positions: F32, spacing_m: F32) -> F32:
         way = distance[stuck, nearest] + _CLEARANCE * spacing_m[stuck]
         short = open_[np.arange(len(stuck)), nearest] & (way <= _MAX_MOVE * spacing_m[stuck])
         stuck, open_, nearest, way = stuck[short], open_[short], nearest[short], way[short]
-        move = directions[nearest] * way[:, None]
+        move = (directions[nearest] * way[:, None]).astype(np.float32)
         still_inside = quick_validity(world, positions[stuck] + move) < 1.0 - MAX_BACKS
         offsets[stuck[~still_inside]] = move[~still_inside]
         tried = directions[nearest] @ directions.T > 0.5
