@@ -90,6 +90,19 @@ def test_every_source_is_one_leaf_and_the_tree_is_as_shallow_as_its_kinds_let_it
     assert math.ceil(math.log2(n)) <= table.depth <= math.ceil(math.log2(n)) + n_kinds - 1
 
 
+def test_tree_of_very_many_sources_is_complete_too(monkeypatch):
+    from irradia.transport import light_tree_build
+    from irradia.transport.light_bounds import bounds_of_lights
+
+    sources = bounds_of_lights(lamps(300, kinds=("point",)))
+    monkeypatch.setattr(light_tree_build, "_THOROUGH_UP_TO", 100)
+    table = light_tree_build.build_light_tree(sources, np.zeros(300, np.bool_))
+    assert len(table.nodes) == 299
+    assert table.depth == 9
+    halves = table.nodes[0, :, :3]
+    assert abs(halves[0, 0] - halves[1, 0]) > 8.0  # cut across x, where the hall is longest
+
+
 def test_bounds_hold_what_is_below_them():
     from irradia.transport.light_bounds import bounds_of_groups, bounds_of_lights
 

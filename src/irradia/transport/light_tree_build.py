@@ -23,6 +23,7 @@ PUNCTUAL_ONLY = 0x40000000  # in a left link: nothing below this node's parent i
 INDEX_BITS = 0x3FFFFFFF
 CHILD_WORDS = 12
 ALL_ROUND = 4.0  # stands where no direction counts
+_THOROUGH_UP_TO = 1 << 15  # sources; trying every cut takes a minute for a million
 
 
 @dataclass(frozen=True)
@@ -120,6 +121,8 @@ def _best_order(
     sources: LightBounds, members: NDArray[np.int64], node: NDArray[np.int64], sizes: NDArray[np.int64]
 ) -> NDArray[np.int64]:
     """The members, sorted in each node along the direction whose halves have the smaller bounds."""
+    if len(sources) > _THOROUGH_UP_TO:
+        return members[np.lexsort((members, _along_widest(sources.centre[members], node, sizes), node))]
     n_left = (sizes + 1) // 2
     halves = np.cumsum([0, *np.stack([n_left, sizes - n_left], axis=1).ravel()[:-1]])
     best_cost = np.full(len(sizes), np.inf)
@@ -131,6 +134,13 @@ def _best_order(
         best = np.where(better[node], sorted_members, best)
         best_cost = np.where(better, cost, best_cost)
     return best
+
+
+def _along_widest(places: F64, node: NDArray[np.int64], sizes: NDArray[np.int64]) -> F64:
+    """Each place's coordinate along the axis on which its node reaches furthest."""
+    first = np.cumsum([0, *sizes[:-1]])
+    extent = np.maximum.reduceat(places, first) - np.minimum.reduceat(places, first)
+    return places[np.arange(len(places)), extent.argmax(axis=1)[node]]
 
 
 def _keys(sources: LightBounds) -> list[F64]:
