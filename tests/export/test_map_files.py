@@ -118,6 +118,17 @@ def test_what_rgbm_cannot_hold_is_counted(tmp_path: Path, lightmap: LightmapFile
         assert read_map(path)[3, 4].max() == pytest.approx((64.0 if name == "rgbm" else 8.0) * lightmap.scale)
 
 
+def test_only_texels_that_charts_reach_are_spent_on(tmp_path: Path) -> None:
+    """A chart in a dilated page: its texels and two around them are kept, blocks beyond are black."""
+    coverage = np.zeros((1, 32, 32), np.float32)
+    coverage[0, 12:20, 13:18] = 0.1
+    pages = np.full((1, 32, 32, 3), 0.7, np.float32)
+    path = write_maps(tmp_path, make_lightmap(pages, coverage), ("ktx2-bc6h",))[0]
+    kept = read_map(path).max(axis=-1) > 0.0
+    assert kept[10:22, 11:20].all()
+    assert kept.sum() == 16 * 12  # whole blocks: rows 8 to 23, columns 8 to 19
+
+
 def test_empty_part_of_a_page_costs_bc6h_nothing(tmp_path: Path, lightmap: LightmapFile) -> None:
     full = np.stack([lightmap.pages[0], lightmap.pages[0]])
     full[:, 15:, 14:] = full[:, 14:15, 14:]

@@ -111,7 +111,7 @@ def test_two_flat_colours_in_any_partition_are_kept_apart() -> None:
     from irradia.formats.bc6h_tables import REGION
 
     near, far = np.array([0.5, 0.25, 0.125]), np.array([0.55, 0.2, 0.16])
-    rgb = np.where(REGION.reshape(32, 4, 4, 1) == 0, near, far).swapaxes(0, 1).reshape(4, 128, 3)
+    rgb = np.where(REGION[:32].reshape(32, 4, 4, 1) == 0, near, far).swapaxes(0, 1).reshape(4, 128, 3)
     back = decode_bc6h(encode_bc6h(rgb), 4, 128)
     np.testing.assert_allclose(back, rgb, rtol=0.005)
 

@@ -21,6 +21,7 @@ from irradia.formats.ktx2_texels import Encoding
 from irradia.formats.lightmap import LightmapFile, page_attributes, page_path, unit_of, write_lightmap_page
 
 DEFAULT_FORMATS = ("exr",)
+_RIM_PX = 2  # one that a bilinear lookup reaches, and one for a uv's rounding
 
 
 @dataclass(frozen=True)
@@ -136,9 +137,16 @@ def _over_scale(lightmap: LightmapFile, page: int) -> NDArray[np.float32]:
 
 
 def _weights(lightmap: LightmapFile, page: int) -> NDArray[np.float32]:
-    """(H, W): 1 for texels that show; what was dilated shows at charts' rims; the empty page does not."""
-    dilated = (lightmap.pages[page] > 0.0).any(axis=-1)
-    return (dilated | (lightmap.coverage[page] > 0.0)).astype(np.float32)
+    """(H, W): 1 for texels that bilinear lookups on charts reach, 0 beyond and where nothing was filled."""
+    covered = lightmap.coverage[page] > 0.0
+    reached = covered.copy()
+    for rows in (reached, reached.T):
+        for _ in range(_RIM_PX):
+            before = rows.copy()
+            rows[1:] |= before[:-1]
+            rows[:-1] |= before[1:]
+    filled = covered | (lightmap.pages[page] > 0.0).any(axis=-1)
+    return (reached & filled).astype(np.float32)
 
 
 def _text(lightmap: LightmapFile, page: int, unit: float) -> dict[str, str]:

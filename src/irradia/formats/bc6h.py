@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.core.errors import InputError
+from irradia.formats.bands import map_bands
 from irradia.formats.bc6h_decode import half_bits_from_blocks
 from irradia.formats.bc6h_tables import BLOCK_BYTES
 from irradia.formats.limits import HALF_MAX
@@ -17,7 +18,7 @@ from irradia.formats.limits import HALF_MAX
 # Where errors turn from relative to absolute: darker than this an eighth of a stop no longer counts in full.
 DARK = 2.0**-8
 DEFAULT_PARTITIONS = 4
-_BAND_BLOCKS = 1 << 15
+_BAND_BLOCKS = 1 << 14
 
 
 def encode_bc6h(
@@ -42,15 +43,16 @@ def encode_bc6h(
     from irradia.formats.bc6h_kernels import encode_blocks
 
     height, width = rgb.shape[:2]
-    across = block_count(width)
-    blocks = np.zeros((block_count(height), across, BLOCK_BYTES), np.uint8)
-    band = max(_BAND_BLOCKS // across, 1)
-    for first in range(0, len(blocks), band):
-        rows = slice(4 * first, min(4 * (first + band), height))
+    blocks = np.zeros((block_count(height), block_count(width), BLOCK_BYTES), np.uint8)
+
+    def encode(band: slice) -> None:
+        rows = slice(4 * band.start, min(4 * band.stop, height))
         half = np.nan_to_num(np.clip(rgb[rows], 0.0, HALF_MAX)).astype(np.float16)
         metric = _metric(half, None if weights is None else weights[rows], dark)
         texels = _texel_blocks(half.view(np.uint16), "edge")
-        encode_blocks(texels, _texel_blocks(metric, "constant"), n_partitions, _flat(blocks, first, band))
+        encode_blocks(texels, _texel_blocks(metric, "constant"), n_partitions, _flat(blocks[band]))
+
+    map_bands(encode, len(blocks), max(_BAND_BLOCKS // blocks.shape[1], 1))
     return blocks
 
 
@@ -58,11 +60,13 @@ def decode_bc6h(blocks: NDArray[np.uint8], height: int, width: int) -> NDArray[n
     """Decodes (blocks down, blocks across, 16) bytes to (H, W, 3); what pads the last blocks is cut off."""
     down, across = blocks.shape[:2]
     rgb = np.empty((4 * down, 4 * across, 3), np.float32)
-    band = max(_BAND_BLOCKS // across, 1)
-    for first in range(0, down, band):
-        texels = half_bits_from_blocks(_flat(blocks, first, band)).view(np.float16)
+
+    def decode(band: slice) -> None:
+        texels = half_bits_from_blocks(_flat(blocks[band])).view(np.float16)
         rows = texels.reshape(-1, across, 4, 4, 3).swapaxes(1, 2)
-        rgb[4 * first : 4 * (first + band)] = rows.reshape(-1, 4 * across, 3)
+        rgb[4 * band.start : 4 * band.stop] = rows.reshape(-1, 4 * across, 3)
+
+    map_bands(decode, down, max(_BAND_BLOCKS // across, 1))
     return np.ascontiguousarray(rgb[:height, :width])
 
 
@@ -101,6 +105,6 @@ def _texel_blocks(texels: NDArray, mode: str) -> NDArray:
     return np.ascontiguousarray(rows).reshape(-1, 16, n_channels)
 
 
-def _flat(blocks: NDArray[np.uint8], first: int, band: int) -> NDArray[np.uint8]:
-    """A view of some rows of blocks as (N, 16)."""
-    return blocks[first : first + band].reshape(-1, BLOCK_BYTES)
+def _flat(blocks: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """A view of rows of blocks as (N, 16)."""
+    return blocks.reshape(-1, BLOCK_BYTES)

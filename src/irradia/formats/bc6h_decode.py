@@ -9,11 +9,10 @@ from irradia.formats.bc6h_tables import (
     BIT_POSITIONS,
     INDEX_AT,
     INDEX_WIDTH,
+    LEVELS,
     MODES,
     PARTITION_AT,
     REGION,
-    WEIGHTS_3,
-    WEIGHTS_4,
     WHOLE,
     Mode,
 )
@@ -49,13 +48,10 @@ def _decode(bits: NDArray[np.uint8], mode: Mode, positions: I64) -> NDArray[np.u
     """(K, 16, 3) of blocks that have one mode."""
     endpoints = unquantise(_endpoint_codes(bits, mode, positions), mode.base_bits)
     partition = np.full(len(bits), WHOLE)
-    region = np.zeros((len(bits), 16), np.int64)
-    weights = WEIGHTS_4
     if mode.n_regions == 2:
         partition = _number(bits, PARTITION_AT + np.arange(5))
-        region = REGION[partition]
-        weights = WEIGHTS_3
-    weight = weights[_indices(bits, partition)][..., None]
+    region = REGION[partition]
+    weight = LEVELS[mode.n_regions - 1][_indices(bits, partition)][..., None]
     rows = np.arange(len(bits))[:, None]
     low, high = endpoints[rows, 2 * region], endpoints[rows, 2 * region + 1]
     mixed = (low * (64 - weight) + high * weight + 32) >> 6

@@ -11,19 +11,18 @@ are fitted).
 from __future__ import annotations
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 from irradia.formats.bc6h_tables import (
     ANCHORS,
     BIT_POSITIONS,
     INDEX_AT,
     INDEX_WIDTH,
+    LEVELS,
     MODES,
     N_PARTITIONS,
     PARTITION_AT,
     REGION,
-    WEIGHTS_3,
-    WEIGHTS_4,
     WHOLE,
 )
 
@@ -32,9 +31,8 @@ _CODE_BITS = np.array([mode.code_bits for mode in MODES])
 _BASE_BITS = np.array([mode.base_bits for mode in MODES])
 _DELTA_BITS = np.array([mode.delta_bits for mode in MODES])
 _TRANSFORMED = np.array([mode.transformed for mode in MODES])
-# Finest endpoints first; the last of each takes any endpoints.
-_ONE_REGION = np.array([13, 12, 11, 10])
-_TWO_REGIONS = np.array([2, 3, 4, 0, 5, 6, 7, 8, 1, 9])
+# Modes for one region and for two, finest endpoints first; the last of each takes any endpoints.
+_ORDER = np.array([[13, 12, 11, 10, -1, -1, -1, -1, -1, -1], [2, 3, 4, 0, 5, 6, 7, 8, 1, 9]])
 _BLACK = 10  # the mode of blocks that don't matter
 
 _AXIS_STEPS = 4  # of the power iteration; more change no block's partition
@@ -51,7 +49,7 @@ def _unquantise(code, n_bits):
     return ((code << 16) + 0x8000) >> n_bits
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True)
 def _nearest_code(value, n_bits):
     """The code whose value is nearest: steps are equally wide but for the outermost, at 0 and 65535."""
     if n_bits >= 15:
@@ -67,9 +65,9 @@ def _nearest_code(value, n_bits):
 
 
 @njit(cache=True)
-def _quantise(ends, mode, codes):
-    """Fills codes (E, 3); false where a difference from the first endpoint is too wide for the mode."""
-    for e in range(len(ends)):
+def _quantise(ends, n_ends, mode, codes):
+    """Fills codes; false where a difference from the first endpoint is too wide for the mode."""
+    for e in range(n_ends):
         for c in range(3):
             codes[e, c] = _nearest_code(ends[e, c], _BASE_BITS[mode])
             if e > 0 and _TRANSFORMED[mode]:
@@ -81,22 +79,27 @@ def _quantise(ends, mode, codes):
 
 
 @njit(cache=True)
-def _assign(half, metric, region, widths, codes, mode, levels, scratch):
+def _assign(half, metric, partition, codes, mode, scratch):
     """Gives every texel its nearest palette entry and returns the block's error."""
     palette, errors, index = scratch
-    for r in range(len(codes) // 2):
+    two = int(partition != WHOLE)
+    for r in range(two + 1):
         for c in range(3):
             low = _unquantise(codes[2 * r, c], _BASE_BITS[mode])
             high = _unquantise(codes[2 * r + 1, c], _BASE_BITS[mode])
-            for k in range(len(levels)):
-                mixed = (low * (64 - levels[k]) + high * levels[k] + 32) >> 6
-                palette[r, c, k] = (mixed * 31) >> 6
+            for k in range(16 >> two):
+                level = LEVELS[two, k]
+                palette[r, c, k] = (((low * (64 - level) + high * level + 32) >> 6) * 31) >> 6
     total = 0.0
     for i in range(16):
-        red, green, blue = palette[region[i], 0], palette[region[i], 1], palette[region[i], 2]
-        n = 1 << widths[i]  # anchors have half as many
-        for k in range(n):  # one vector instruction at a time: no branches, 32-bit floats
-            x, y, z = red[k] - half[i, 0], green[k] - half[i, 1], blue[k] - half[i, 2]
+        r = REGION[partition, i]
+        n = 1 << INDEX_WIDTH[partition, i]  # anchors have half as many
+        for k in range(n):  # becomes vector instructions: no branches, 32-bit floats
+            x, y, z = (
+                palette[r, 0, k] - half[i, 0],
+                palette[r, 1, k] - half[i, 1],
+                palette[r, 2, k] - half[i, 2],
+            )
             errors[k] = metric[i, 0] * (x * x) + metric[i, 1] * (y * y) + metric[i, 2] * (z * z)
         best = 0
         for k in range(1, n):
@@ -108,14 +111,15 @@ def _assign(half, metric, region, widths, codes, mode, levels, scratch):
 
 
 @njit(cache=True)
-def _least_squares(target, metric, region, levels, index, ends):
+def _least_squares(target, metric, partition, index, ends):
     """The endpoints that fit best if the indices stay; an endpoint that no texel determines stays."""
-    for r in range(len(ends) // 2):
+    two = int(partition != WHOLE)
+    for r in range(two + 1):
         for c in range(3):
             aa = ab = bb = a_t = b_t = 0.0
             for i in range(16):
-                if region[i] == r:
-                    b = levels[index[i]] / 64.0
+                if REGION[partition, i] == r:
+                    b = LEVELS[two, index[i]] / 64.0
                     a = 1.0 - b
                     weight = metric[i, c]
                     aa += weight * a * a
@@ -173,14 +177,15 @@ def _moments(target, metric, moments):
 
 
 @njit(cache=True)
-def _first_ends(target, moments, region, anchors, ends):
+def _first_ends(target, moments, partition, ends):
     """Endpoints on each region's principal axis about its texels, the anchor's end first."""
-    axis = np.empty(3)
-    for r in range(len(ends) // 2):
-        total = np.zeros(10)
-        for i in range(16):
-            if region[i] == r:
-                total += moments[i]
+    axis, total = np.empty(3), np.empty(10)
+    for r in range(1 + int(partition != WHOLE)):
+        for k in range(10):
+            total[k] = 0.0
+            for i in range(16):
+                if REGION[partition, i] == r:
+                    total[k] += moments[i, k]
         if total[0] <= 0.0:  # nothing here matters: be where no difference is needed
             for c in range(3):
                 ends[2 * r, c] = ends[2 * r + 1, c] = ends[0, c] if r > 0 else 0.0
@@ -188,11 +193,11 @@ def _first_ends(target, moments, region, anchors, ends):
         _axis(total, axis)
         low, high, here = np.inf, -np.inf, 0.0
         for i in range(16):
-            if region[i] == r:
+            if REGION[partition, i] == r:
                 along = 0.0
                 for c in range(3):
                     along += axis[c] * (target[i, c] - total[1 + c] / total[0])
-                if i == anchors[r]:
+                if i == r * ANCHORS[partition]:
                     here = along
                 if moments[i, 0] > 0.0:
                     low, high = min(low, along), max(high, along)
@@ -207,21 +212,15 @@ def _first_ends(target, moments, region, anchors, ends):
 @njit(cache=True)
 def _partition_scores(moments, scores):
     """What each partition would leave: all that lies off its regions' axes, and index steps along them."""
-    whole = np.zeros(10)
-    for i in range(16):
-        whole += moments[i]
     part = np.empty((2, 10))
     for p in range(N_PARTITIONS):
-        part[1] = 0.0
+        for k in range(10):
+            part[0, k] = part[1, k] = 0.0
         for i in range(16):
-            if REGION[p, i]:
-                for k in range(10):
-                    part[1, k] += moments[i, k]
+            for k in range(10):
+                part[REGION[p, i], k] += moments[i, k]
         scores[p] = 0.0
         for r in range(2):
-            if r == 0:
-                for k in range(10):
-                    part[0, k] = whole[k] - part[1, k]
             xx, xy, xz, yy, yz, zz = _covariance(part[r])
             # The covariance's Frobenius norm stands for its largest eigenvalue: they differ little
             # where one partition is clearly better than another, and iterating took 3 times as long.
@@ -245,28 +244,25 @@ def _fit(half, target, metric, moments, partition, scratch, best):
     """
     index = scratch[2]
     best_error, best_head, best_codes, best_index = best
-    whole = partition == WHOLE
-    n_ends = 2 if whole else 4
-    levels = WEIGHTS_4 if whole else WEIGHTS_3
-    order = _ONE_REGION if whole else _TWO_REGIONS
-    region = np.zeros(16, np.int64) if whole else REGION[partition]
-    anchors = np.array([0, 0 if whole else ANCHORS[partition]])
-    ends = np.empty((n_ends, 3))
-    codes = np.empty((n_ends, 3), np.int64)
-    _first_ends(target, moments, region, anchors, ends)
+    two = int(partition != WHOLE)
+    n_ends = 2 + 2 * two
+    ends, codes = np.empty((4, 3)), np.empty((4, 3), np.int64)
+    _first_ends(target, moments, partition, ends)
     for _ in range(_FITS):
-        mode = order[-1]
-        for candidate in order:
-            if _quantise(ends, candidate, codes):
-                mode = candidate
-                break
-        error = _assign(half, metric, region, INDEX_WIDTH[partition], codes, mode, levels, scratch)
+        choice = 0
+        while not _quantise(ends, n_ends, _ORDER[two, choice], codes):
+            choice += 1
+        mode = _ORDER[two, choice]
+        error = _assign(half, metric, partition, codes, mode, scratch)
         if error < best_error[0]:
             best_error[0] = error
             best_head[0], best_head[1] = mode, partition
-            best_codes[:n_ends] = codes
-            best_index[:] = index
-        _least_squares(target, metric, region, levels, index, ends)
+            for e in range(n_ends):
+                for c in range(3):
+                    best_codes[e, c] = codes[e, c]
+            for i in range(16):
+                best_index[i] = index[i]
+        _least_squares(target, metric, partition, index, ends)
 
 
 @njit(cache=True)
@@ -296,31 +292,39 @@ def _write_block(out, mode, partition, codes, index):
 
 @njit(cache=True)
 def _encode_block(half_bits, metric, n_partitions, out):
-    half = half_bits.astype(np.float32)
-    # The centre of the values that decode to these bits: bits = value · 31 >> 6.
-    target = (half.astype(np.float64) * 64.0 + 31.5) / 31.0
-    moments = np.empty((16, 10))
+    half, target, moments = np.empty((16, 3), np.float32), np.empty((16, 3)), np.empty((16, 10))
+    weight = 0.0
+    for i in range(16):
+        for c in range(3):
+            half[i, c] = half_bits[i, c]
+            # The centre of the values that decode to these bits: bits = value · 31 >> 6.
+            target[i, c] = (half_bits[i, c] * 64.0 + 31.5) / 31.0
+            weight += metric[i, c]
     _moments(target, metric, moments)
     scratch = (np.empty((2, 3, 16), np.float32), np.empty(16, np.float32), np.empty(16, np.int64))
     error, head = np.array([np.inf]), np.array([_BLACK, WHOLE])
     codes, index = np.zeros((4, 3), np.int64), np.zeros(16, np.int64)
     best = (error, head, codes, index)
-    weight = metric.sum()
-    if weight > 0.0:
-        _fit(half, target, metric, moments, WHOLE, scratch, best)
-        if n_partitions > 0 and error[0] > _GOOD_ENOUGH * weight:
-            scores = np.empty(N_PARTITIONS)
+    partition = WHOLE
+    scores = np.empty(N_PARTITIONS)
+    for attempt in range(1 + n_partitions if weight > 0.0 else 0):
+        if attempt == 1:
+            if error[0] <= _GOOD_ENOUGH * weight:
+                break
             _partition_scores(moments, scores)
-            for _ in range(n_partitions):
-                partition = np.argmin(scores)
-                scores[partition] = np.inf
-                _fit(half, target, metric, moments, partition, scratch, best)
+        if attempt > 0:
+            partition = 0
+            for p in range(1, N_PARTITIONS):
+                if scores[p] < scores[partition]:
+                    partition = p
+            scores[partition] = np.inf
+        _fit(half, target, metric, moments, partition, scratch, best)
     _write_block(out, head[0], head[1], codes, index)
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, nogil=True)
 def encode_blocks(half_bits, metric, n_partitions, out):
-    """Encodes blocks side by side on all cores.
+    """Encodes blocks; threads may do so side by side.
 
     Args:
         half_bits: (N, 16, 3) uint16 bits of half floats from 0 to HALF_MAX_BITS.
@@ -328,5 +332,5 @@ def encode_blocks(half_bits, metric, n_partitions, out):
         n_partitions: How many of the 32 partitions are fitted, the likeliest first; 0 for one region only.
         out: (N, 16) uint8 of zeros.
     """
-    for n in prange(len(half_bits)):
+    for n in range(len(half_bits)):
         _encode_block(half_bits[n], metric[n], n_partitions, out[n])

@@ -20,8 +20,14 @@ INDICES_AT = {1: 65, 2: 82}
 PARTITION_AT = 77
 HALF_MAX_BITS = 0x7BFF  # 65504, the largest that the unsigned format decodes to
 
-WEIGHTS_4 = np.array([0, 4, 9, 13, 17, 21, 26, 30, 34, 38, 43, 47, 51, 55, 60, 64], np.int64)
-WEIGHTS_3 = np.array([0, 9, 18, 27, 37, 46, 55, 64], np.int64)
+# The second endpoint's share in 64ths by index; a row for one region and, of eight, for two.
+LEVELS = np.array(
+    [
+        [0, 4, 9, 13, 17, 21, 26, 30, 34, 38, 43, 47, 51, 55, 60, 64],
+        [0, 9, 18, 27, 37, 46, 55, 64, -1, -1, -1, -1, -1, -1, -1, -1],
+    ],
+    np.int64,
+)
 
 
 @dataclass(frozen=True)
@@ -97,15 +103,17 @@ MODES = (
          "r0[9:0] g0[9:0] b0[9:0] r1[3:0] r0[10:15] g1[3:0] g0[10:15] b1[3:0] b0[10:15]"),
 )  # fmt: skip
 
+WHOLE = N_PARTITIONS  # the row of blocks with one region, in tables by partition
 # Bit i of a mask: texel i, row by row, lies in region 1.
 _PARTITION_MASKS = (
     *(0xCCCC, 0x8888, 0xEEEE, 0xECC8, 0xC880, 0xFEEC, 0xFEC8, 0xEC80),
     *(0xC800, 0xFFEC, 0xFE80, 0xE800, 0xFFE8, 0xFF00, 0xFFF0, 0xF000),
     *(0xF710, 0x008E, 0x7100, 0x08CE, 0x008C, 0x7310, 0x3100, 0x8CCE),
     *(0x088C, 0x3110, 0x6666, 0x366C, 0x17E8, 0x0FF0, 0x718E, 0x399C),
+    0x0000,
 )
 # Region 1's texel whose index is stored without its highest bit, which is 0; region 0's is texel 0.
-ANCHORS = np.array([15] * 17 + [2, 8, 2, 2, 8, 8, 15, 2, 8, 2, 2, 8, 8, 2, 2], np.int64)
+ANCHORS = np.array([15] * 17 + [2, 8, 2, 2, 8, 8, 15, 2, 8, 2, 2, 8, 8, 2, 2, 0], np.int64)
 REGION = (np.array(_PARTITION_MASKS)[:, None] >> np.arange(TEXELS) & 1).astype(np.int64)
 
 
@@ -125,18 +133,15 @@ def _bit_positions(mode: Mode) -> NDArray[np.int64]:
 
 
 def _index_positions() -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """(33, 16) each: first bits and widths of texels' indices by partition, the last row without one."""
+    """(33, 16) each: the first bits and the widths of texels' indices, by partition."""
     starts, widths = np.empty((2, N_PARTITIONS + 1, TEXELS), np.int64)
     for row in range(N_PARTITIONS + 1):
-        n_regions = 1 if row == N_PARTITIONS else 2
+        n_regions = 1 if row == WHOLE else 2
         widths[row] = INDEX_BITS[n_regions]
-        widths[row, 0] -= 1
-        if n_regions == 2:
-            widths[row, ANCHORS[row]] -= 1
+        widths[row, [0, ANCHORS[row]]] -= 1
         starts[row] = INDICES_AT[n_regions] + np.cumsum(widths[row]) - widths[row]
     return starts, widths
 
 
-WHOLE = N_PARTITIONS  # the row of blocks with one region
 BIT_POSITIONS = np.stack([_bit_positions(mode) for mode in MODES])
 INDEX_AT, INDEX_WIDTH = _index_positions()

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from irradia.core.errors import InputError
 from irradia.core.files import write_atomic
 from irradia.formats import hdr_runs
+from irradia.formats.bands import map_bands
 from irradia.formats.limits import check_image_size
 
 U8 = NDArray[np.uint8]
@@ -107,11 +108,14 @@ def write_hdr(path: Path | str, rgb: NDArray, metadata: Mapping[str, str] | None
     height, width = rgb.shape[:2]
     lines = "".join(f"{name}={value}\n" for name, value in sorted((metadata or {}).items()))
     head = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n{lines}\n-Y {height} +X {width}\n"
+
+    def encode(band: slice) -> bytes:
+        rgbe = rgbe_from_linear(rgb[band])
+        return hdr_runs.encode_scanlines(rgbe) if width in hdr_runs.WIDTHS else rgbe.tobytes()
+
     with write_atomic(path) as stream:
         stream.write(head.encode("ascii"))
-        for start in range(0, height, _BAND_ROWS):
-            rgbe = rgbe_from_linear(rgb[start : start + _BAND_ROWS])
-            stream.write(hdr_runs.encode_scanlines(rgbe) if width in hdr_runs.WIDTHS else rgbe.tobytes())
+        stream.writelines(map_bands(encode, height, _BAND_ROWS))
 
 
 def linear_from_rgbe(rgbe: U8) -> NDArray[np.float32]:

@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from irradia.formats.bands import map_bands
 from irradia.formats.bc6h import block_count, blocks_from_bytes, decode_bc6h, encode_bc6h
 from irradia.formats.bc6h_tables import BLOCK_BYTES
 from irradia.formats.limits import HALF_MAX
@@ -16,7 +17,7 @@ Encoding = Literal["half", "rgb9e5", "bc6h"]
 # VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_E5B9G9R9_UFLOAT_PACK32, VK_FORMAT_BC6H_UFLOAT_BLOCK
 VK_FORMAT: dict[Encoding, int] = {"half": 97, "rgb9e5": 123, "bc6h": 143}
 TYPE_BYTES: dict[Encoding, int] = {"half": 2, "rgb9e5": 4, "bc6h": 1}
-_BAND_TEXELS = 1 << 19
+_BAND_TEXELS = 1 << 18
 
 
 def level_bytes(encoding: Encoding, n_pages: int, height: int, width: int) -> int:
@@ -40,14 +41,16 @@ def encode_level(pages: NDArray, encoding: Encoding, weights: NDArray | None = N
     n_pages, height, width = pages.shape[:3]
     texels = np.empty((n_pages * height, width), "<u4" if encoding == "rgb9e5" else ("<f2", (4,)))
     rows = pages.reshape(n_pages * height, width, 3)
-    band = max(_BAND_TEXELS // width, 1)  # RGB9E5 takes 100 bytes a texel on the way
-    for start in range(0, len(rows), band):
-        part = rows[start : start + band]
+
+    def encode(band: slice) -> None:
         if encoding == "rgb9e5":
-            texels[start : start + band] = pack_rgb9e5(part)
+            texels[band] = pack_rgb9e5(rows[band])
         else:
-            texels[start : start + band, :, :3] = np.clip(part, 0.0, HALF_MAX)
-            texels[start : start + band, :, 3] = 1.0
+            texels[band, :, :3] = np.nan_to_num(np.clip(rows[band], 0.0, HALF_MAX))
+            texels[band, :, 3] = 1.0
+
+    # RGB9E5 takes 100 bytes a texel on the way.
+    map_bands(encode, len(rows), max(_BAND_TEXELS // width, 1))
     return texels.tobytes()
 
 

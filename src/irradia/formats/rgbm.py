@@ -19,12 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.core.errors import InputError
+from irradia.formats.bands import map_bands
 from irradia.formats.limits import check_image_size
 from irradia.formats.png import write_png
 
 U8 = NDArray[np.uint8]
 RANGE_KEY, GAMMA_KEY = "irradia:rgbm_range", "irradia:rgbm_gamma"
-_BAND_ROWS = 256
+_BAND_ROWS = 128
 
 
 @dataclass(frozen=True)
@@ -66,12 +67,15 @@ def encode_rgbm(rgb: NDArray, coding: RgbmCoding = RgbmCoding()) -> U8:
     M is the smallest that holds the largest channel, so that RGB uses all of its steps.
     """
     texels = np.empty((*rgb.shape[:2], 4), np.uint8)
-    for start in range(0, len(rgb), _BAND_ROWS):
-        rows = np.nan_to_num(np.asarray(rgb[start : start + _BAND_ROWS], np.float32), posinf=np.inf)
+
+    def encode(band: slice) -> None:
+        rows = np.nan_to_num(np.asarray(rgb[band], np.float32), posinf=np.inf)
         coded = np.minimum(np.maximum(rows, 0.0) ** np.float32(1.0 / coding.gamma) / coding.range, 1.0)
         multiplier = np.maximum(np.ceil(coded.max(axis=-1, keepdims=True) * 255.0), 1.0)
-        texels[start : start + _BAND_ROWS, :, :3] = np.round(coded * (255.0 * 255.0) / multiplier)
-        texels[start : start + _BAND_ROWS, :, 3:] = multiplier
+        texels[band, :, :3] = np.round(coded * (255.0 * 255.0) / multiplier)
+        texels[band, :, 3:] = multiplier
+
+    map_bands(encode, len(rgb), _BAND_ROWS)
     return texels
 
 
