@@ -30,7 +30,7 @@ def main() -> None:
     for _ in bake.passes():
         pass
     values = bake.light.to_host(bake.bake.estimate())[chosen]
-    clear = bake.hidden_share[chosen] == 0.0
+    clear = bake.footprints.hidden_share[chosen] == 0.0
     np.savez(arguments.result, irradiance_over_pi=values, clear=clear)
 
 

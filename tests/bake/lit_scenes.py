@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from irradia.bake.lightmap import BakeOptions, LightmapResult, bake_lightmap, cover
+from irradia.bake.lightmap import BakeOptions, LightmapResult, bake_lightmap
+from irradia.bake.setup import cover
 from irradia.bake.texels import TexelSet
 from irradia.cli.lighting import LightOptions, light_scene
 from irradia.core import silent_progress

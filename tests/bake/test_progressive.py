@@ -61,7 +61,7 @@ def test_every_pass_tells_which_texels_have_changed_and_to_what(cornell):
         assert values.shape == (len(done.texels), 3)
         assert np.isfinite(values).all()
         seen[done.texels] = True
-    assert (seen == (bake.hidden_share < 1.0)).all()
+    assert (seen == bake.valid).all()
     np.testing.assert_array_equal(values, _values(bake)[done.texels])
 
 
@@ -182,12 +182,12 @@ def test_time_budget_ends_the_bake(cornell):
 def test_what_the_camera_sees_comes_first(cornell):
     scene, _ = cornell
     bake = _start(cornell, Selection(view=camera_from_spec(scene, None)), samples=256)
-    seen = bake.light.seen_from(camera_from_spec(scene, None)) & (bake.hidden_share < 1.0)
+    seen = bake.light.seen_from(camera_from_spec(scene, None)) & bake.valid
     assert 0.05 < seen.mean() < 0.95
     counts = []
     for _ in bake.passes():
         rays = bake.bake.sample_counts()
-        counts.append((rays[seen].mean(), rays[~seen & (bake.hidden_share < 1.0)].mean()))
+        counts.append((rays[seen].mean(), rays[~seen & bake.valid].mean()))
     assert max(unseen / max(mine, 1) for mine, unseen in counts[len(counts) // 3 : len(counts) // 2]) < 1.0
     assert counts[-1][1] == pytest.approx(256)
 
@@ -199,7 +199,7 @@ def test_only_the_chosen_instances_get_the_results_rays(cornell):
     _run(bake)
     mine = bake.mesh.instance[bake.texels.triangle] == 0
     rays = bake.bake.sample_counts()
-    assert (rays[mine & (bake.hidden_share < 1.0)] == 64).all()
+    assert (rays[mine & bake.valid] == 64).all()
     assert (rays[~mine] == 0).all()
 
 

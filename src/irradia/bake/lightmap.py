@@ -22,6 +22,7 @@ from irradia.scene.types import F32, U32, Camera, Light, Scene
 if TYPE_CHECKING:
     from irradia.bake.directional import DirectionalMaps
     from irradia.bake.finish import Finisher
+    from irradia.transport.footprints import Footprints
     from irradia.transport.texel_light import TexelLight
     from irradia.transport.texel_noise import NoiseMeter
 
@@ -55,6 +56,7 @@ class LightmapResult:
         irradiance_over_pi: (N, 3) as traced: linear, not denoised.
         hidden_share: (N,) share of each texel's sub-samples that lie inside something; the light
             is that of the others.
+        valid: (N,) whether the texel's light counts; the others take it from their chart.
         sample_count: (N,) rays that make the result.
         pages: (P, H, W, 3) finished: denoised where asked, dilated.
         stats: What the bake did and how fast; plain values, fit for JSON.
@@ -69,6 +71,7 @@ class LightmapResult:
     texels: TexelSet
     irradiance_over_pi: F32
     hidden_share: F32
+    valid: NDArray[np.bool_]
     sample_count: U32
     pages: F32
     stats: dict[str, Any]
@@ -77,11 +80,6 @@ class LightmapResult:
     shadows: F32 | None = None
     lights: tuple[Light, ...] = ()
     shadow_channels: tuple[int | None, ...] = ()
-
-    @property
-    def valid(self) -> NDArray[np.bool_]:
-        """(N,) whether the texel sees the scene rather than the inside of a wall."""
-        return self.hidden_share < 1.0
 
     @property
     def raw_pages(self) -> F32:
@@ -100,12 +98,12 @@ class LightmapBake:
 
     Attributes:
         mesh, layout, texels, light: The scene, what is baked and where, and its kernels.
-        hidden_share: See :class:`LightmapResult`.
+        footprints: What of each texel looks at the scene.
         bake: The passes.
         meter: Noise of the result so far.
         lights: The scene's, with the part that each has.
         masks: Which of them have a shadow mask.
-        region: (N,) parts of charts over which light may be taken from texel to texel, or None.
+        region: (N,) parts of charts over which light may be taken from texel to texel.
     """
 
     options: BakeOptions
@@ -113,17 +111,17 @@ class LightmapBake:
     layout: LightmapLayout
     texels: TexelSet
     light: TexelLight
-    hidden_share: F32
+    footprints: Footprints
     bake: ProgressiveBake
     meter: NoiseMeter
     lights: tuple[Light, ...]
     masks: ShadowMaskPlan
-    region: U32 | None = None
+    region: U32
 
     @property
     def valid(self) -> NDArray[np.bool_]:
         """(N,) whether a texel's light counts."""
-        return self.hidden_share < 1.0
+        return self.footprints.valid
 
     def passes(self, progress: Progress | None = None) -> Iterator[Pass]:
         """Runs the bake from where it stands; see :class:`Pass` for what each tells."""
@@ -147,7 +145,8 @@ class LightmapBake:
         return LightmapResult(
             self.texels,
             estimate,
-            self.hidden_share,
+            self.footprints.hidden_share,
+            self.valid,
             self.bake.sample_counts(),
             pages,
             self.stats(),

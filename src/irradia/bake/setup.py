@@ -14,6 +14,7 @@ from irradia.bake.lightmap import LightmapBake, Selection
 from irradia.bake.options import MAX_SAMPLES, BakeOptions, Mode
 from irradia.bake.plan import lanes_per_texel, plan_epochs, rays_per_pass, slice_bounds
 from irradia.bake.progressive import ProgressiveBake
+from irradia.bake.regions import find_regions
 from irradia.bake.rounds import ROUND, AdaptiveRounds, Rounds, UniformRounds
 from irradia.bake.shadow_mask import plan_shadow_mask
 from irradia.bake.texels import TexelSet
@@ -34,6 +35,7 @@ def set_up(
     Raises:
         InputError: If nothing in the scene takes a lightmap.
     """
+    from irradia.transport.texel_grid import TexelGrid
     from irradia.transport.texel_noise import NoiseMeter
 
     with progress.stage("texels"):
@@ -47,8 +49,10 @@ def set_up(
         light = prepare(scene, mesh, layout, texels, options)
     _warn_of_clamped(light, progress)
     with progress.stage("hidden texels"):
-        hidden_share = light.drop_hidden_subsamples()
-    valid = hidden_share < 1.0
+        grid = TexelGrid(texels.pixel, texels.chart, texels.width_px, texels.height_px)
+        footprints = light.clear_footprints(grid)
+        region = find_regions(texels, footprints.visible, footprints.cut_off, footprints.moved)
+    valid = footprints.valid
     chosen = valid & _chosen_texels(texels, mesh, selection)
     traced = _indices(valid if options.cached else chosen)
     with progress.stage("kernels"):
@@ -71,7 +75,9 @@ def set_up(
         time_s=options.time_s,
         one_bounce=options.one_bounce,
     )
-    return LightmapBake(options, mesh, layout, texels, light, hidden_share, bake, meter, scene.lights, masks)
+    return LightmapBake(
+        options, mesh, layout, texels, light, footprints, bake, meter, scene.lights, masks, region
+    )
 
 
 def cover(scene: Scene, layout: LightmapLayout) -> tuple[MergedMesh, TexelSet]:

@@ -18,15 +18,16 @@ from numpy.typing import NDArray
 from irradia.scene.types import Camera
 from irradia.transport.backend import device, dr, mi
 from irradia.transport.channels import MAP, Channels
+from irradia.transport.footprints import Footprints, clear_footprints, light_of_darker_side
 from irradia.transport.frames import Frame, TangentFrames
 from irradia.transport.geometry import Hit, SurfacePoint
-from irradia.transport.hidden import drop_hidden
 from irradia.transport.normal_maps import NormalMaps
 from irradia.transport.path import LightCache, direct, draw_ray, start, trace
 from irradia.transport.sampling import Sampler, hash_u32
 from irradia.transport.subsample_set import SubsampleSet
 from irradia.transport.subsamples import Subsamples
 from irradia.transport.texel_appearance import TexelAppearance
+from irradia.transport.texel_grid import TexelGrid
 from irradia.transport.texel_sums import Lanes, TexelSums
 from irradia.transport.view import seen_texels
 from irradia.transport.world import TriangleRecord, World
@@ -114,6 +115,8 @@ class TexelLight:
         self._normal_maps, self._frames = normal_maps, frames
         self.subsamples = Subsamples(world, pixel, samples)
         self._pixel = mi.UInt32(pixel)
+        self._reflects: mi.Float | None = None
+        self._behind: mi.UInt32 | None = None
         self._every = dr.arange(mi.UInt32, self.n_texels)
         dr.eval(self._every)
 
@@ -150,9 +153,13 @@ class TexelLight:
         """No rays yet."""
         return TexelSums.empty(self.n_texels, self.channels.count)
 
-    def drop_hidden_subsamples(self) -> NDArray[np.float32]:
-        """See :func:`irradia.transport.hidden.drop_hidden`."""
-        return drop_hidden(self.world, self.subsamples)
+    def clear_footprints(self, grid: TexelGrid) -> Footprints:
+        """See :func:`irradia.transport.footprints.clear_footprints`; what is hidden reflects nothing."""
+        found = clear_footprints(self.world, self.subsamples, grid)
+        self._reflects = None if found.visible.all() else mi.Float(found.visible.astype(np.float32))
+        itself = np.arange(self.n_texels, dtype=np.uint32)
+        self._behind = None if np.array_equal(found.behind, itself) else mi.UInt32(found.behind)
+        return found
 
     def seen_from(self, camera: Camera) -> NDArray[np.bool_]:
         """See :func:`irradia.transport.view.seen_texels`."""
@@ -281,7 +288,11 @@ class TexelLight:
         """Light leaving each texel, as the next epoch will read it."""
         width, height = self.world.page_width, self.world.page_height
         buffer = dr.zeros(mi.Float, 4 * width * height * self._n_pages)
+        if self._behind is not None:
+            irradiance_over_pi = light_of_darker_side(irradiance_over_pi, self._behind)
         outgoing = irradiance_over_pi * reflectance * dr.opaque(mi.Float, scale)
+        if self._reflects is not None:
+            outgoing = outgoing * self._reflects
         value = mi.Vector4f(outgoing.x, outgoing.y, outgoing.z, 0.0)
         dr.scatter(buffer, value, self._pixel)
         dr.eval(buffer)
