@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.transport.backend import dr, mi
+from irradia.transport.sampling import to_world
 
 
 @dataclass
@@ -44,11 +45,17 @@ class TangentFrames:
         self._tangents = mi.Float(np.ascontiguousarray(tangents, np.float32).ravel())
 
     def at(self, triangle: mi.UInt32, bary: mi.Point2f, normal: mi.Vector3f, active: mi.Bool) -> Frame:
-        """The frame on a triangle, its tangent interpolated and made square to ``normal``."""
+        """The frame on a triangle, its tangent interpolated and made square to ``normal``.
+
+        Where corners' tangents cancel out, any direction across the normal serves.
+        """
         tangent, sign = mi.Vector3f(0.0), mi.Float(1.0)
         for corner, weight in enumerate((1.0 - bary.x - bary.y, bary.x, bary.y)):
             value = dr.gather(mi.Vector4f, self._tangents, 3 * triangle + corner, active)
             tangent += mi.Vector3f(value.x, value.y, value.z) * weight
             sign = value.w
-        tangent = dr.normalize(tangent - normal * dr.dot(tangent, normal))
+        tangent = tangent - normal * dr.dot(tangent, normal)
+        length = dr.norm(tangent)
+        across = to_world(normal, mi.Vector3f(1.0, 0.0, 0.0))
+        tangent = dr.select(length > 1e-6, tangent / length, across)
         return Frame(tangent, dr.cross(normal, tangent) * sign, normal)
