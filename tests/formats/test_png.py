@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import zlib
 from pathlib import Path
 
@@ -47,6 +48,17 @@ def test_filters_look_across_bands_of_rows(tmp_path: Path) -> None:
     (tmp_path / "a.png").write_bytes(data)
     with Image.open(tmp_path / "a.png") as image:
         assert np.all(np.asarray(image) == row)
+
+
+@pytest.mark.parametrize("band_bytes", [1, 300, 5000])
+def test_bands_deflated_apart_are_one_stream(monkeypatch: pytest.MonkeyPatch, band_bytes: int) -> None:
+    """zlib checks the Adler-32 that is joined of theirs."""
+    monkeypatch.setattr("irradia.formats.png._BAND_BYTES", band_bytes)
+    pixels = np.random.default_rng(24).integers(0, 256, (60, 40, 3), np.uint8)
+    data = encode_png(pixels)
+    assert len(filters_of(data, 40 * 3)) == 60
+    with Image.open(io.BytesIO(data)) as image:
+        np.testing.assert_array_equal(np.asarray(image), pixels)
 
 
 def filters_of(png: bytes, row_bytes: int) -> bytes:
