@@ -49,7 +49,8 @@ def denoise(values: F32, texels: TexelSet, progress: Progress, *, n_threads: int
     lit = values.max(axis=1, initial=0.0) > 0
     if not lit.any():
         return result
-    charts = [members for members in _charts(texels) if lit[members].any()]
+    # A chart of one texel keeps its mean, and so its value.
+    charts = [members for members in _charts(texels) if len(members) > 1 and lit[members].any()]
     with _Filter(_input_scale(values[lit]), n_threads) as network:
         total = float(sum(len(members) for members in charts))
         with progress.stage("denoise", total=total, unit="texel") as stage:

@@ -26,12 +26,12 @@ from irradia.scene.types import F32, U32
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
-_SMOOTH, _STAY = 0.005, 0.0003  # α and β; their ratio spreads a change over four to five texels
+_SMOOTH, _STAY = 0.001, 0.00006  # α and β; their ratio spreads a change over four to five texels
 _RINGS = 4  # texels from the seam beyond which nothing changes
 _TRUSTED_SHARE = 0.2  # of each side that must come from valid texels of its chart
 _DARK = 0.01  # of the median magnitude: what counts as black
 _ALIKE, _APART = 0.5, 0.8  # |a − b| / (a + b): up to here one surface, from here on a wall between
-_TOLERANCE, _MOST_STEPS = 1e-3, 200
+_TOLERANCE, _MOST_STEPS = 1e-3, 300
 
 
 @dataclass(frozen=True)
