@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from irradia.cli import app
+from irradia.cli.bake_trace import STATE
 from irradia.cli.staging import STAGING
 from irradia.formats.lightmap import read_lightmap
 
@@ -92,3 +94,32 @@ def test_a_disk_that_takes_no_more_is_said_and_leaves_the_earlier_results(tmp_pa
     assert _contents(out) == before
     assert [path for path in out.iterdir() if path.is_dir()] == []
     read_lightmap(out / "lightmap.exr")
+
+
+def _kill_after_saves(command: list[str], out: Path, n_saves: int) -> None:
+    """Runs a bake and kills it when it has saved its state anew so many times."""
+    seen = {_stamp(out / STATE)}
+    with subprocess.Popen([sys.executable, "-m", "irradia", *command, str(out)]) as running:
+        while len(seen) <= n_saves:
+            assert running.poll() is None, "it ended before it saved its state"
+            seen.add(_stamp(out / STATE))
+            time.sleep(0.002)
+        running.kill()
+    assert not (out / "lightmap.exr").exists(), "it ended before it was killed"
+
+
+def _stamp(path: Path) -> int:
+    return path.stat().st_mtime_ns if path.exists() else 0
+
+
+def test_a_bake_that_is_killed_and_resumed_gives_the_bytes_of_one_that_ran_through(tmp_path):
+    options = ["--no-report", "--resolution", "32", "--samples", "4096", "--checkpoint", "0.001"]
+    command = ["bake", "builtin:cornell", *options, "-o"]
+    whole, killed = tmp_path / "whole", tmp_path / "killed"
+    assert app.run([*command, str(whole)]) == 0
+    _kill_after_saves(command, killed, 1)
+    _kill_after_saves(["bake", "--resume", *command[1:]], killed, 3)
+    assert app.run([*command, str(killed), "--resume"]) == 0
+    for name in ("lightmap.exr", "preview.png", "scene.baked.glb"):
+        assert (killed / name).read_bytes() == (whole / name).read_bytes(), name
+    assert {path.name for path in killed.iterdir()} == {path.name for path in whole.iterdir()}
