@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from irradia.bake.denoise import denoise
-from irradia.bake.texels import SUBSAMPLES, TexelSet
+from irradia.bake.texels import TexelSet
 from irradia.core.errors import MissingDependencyError
 from irradia.core.progress import silent_progress
 from irradia.transport.subsample_set import SubsampleSet
@@ -28,11 +28,8 @@ def texels_of(charts: list[tuple[int, int, int, int]]) -> TexelSet:
         height_px=SIZE,
         width_px=SIZE,
         pixel=pixel.astype(np.uint32),
-        samples=SubsampleSet(
-            code=np.zeros((SUBSAMPLES // 2, n), np.uint32),
-            first=np.zeros(n, np.uint32),
-            triangle=np.zeros(1, np.uint32),
-        ),
+        triangle=np.zeros(n, np.uint32),
+        samples=SubsampleSet.none(),
         coverage=np.ones(n, np.float32),
         chart=page.ravel()[pixel].astype(np.uint32),
     )

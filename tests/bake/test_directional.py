@@ -12,7 +12,7 @@ from irradia.bake.directional import denoise_directional, finish_directional, te
 from irradia.bake.directional_modes import MODES, SurfaceFrame
 from irradia.bake.finish import Finisher, FinishOptions
 from irradia.bake.rasterise import rasterise
-from irradia.bake.texels import SUBSAMPLES, TexelSet
+from irradia.bake.texels import TexelSet
 from irradia.core.progress import Progress, silent_progress
 from irradia.transport.subsample_set import SubsampleSet
 
@@ -32,11 +32,8 @@ def two_charts() -> TexelSet:
         height_px=SIZE,
         width_px=SIZE,
         pixel=pixel.astype(np.uint32),
-        samples=SubsampleSet(
-            code=np.zeros((SUBSAMPLES // 2, n), np.uint32),
-            first=np.zeros(n, np.uint32),
-            triangle=np.zeros(1, np.uint32),
-        ),
+        triangle=np.zeros(n, np.uint32),
+        samples=SubsampleSet.none(),
         coverage=np.ones(n, np.float32),
         chart=page.ravel()[pixel].astype(np.uint32),
     )

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from irradia.bake.regions import NOWHERE, find_regions
-from irradia.bake.texels import SUBSAMPLES, TexelSet
+from irradia.bake.texels import TexelSet
 from irradia.transport.subsample_set import SubsampleSet
 
 WIDTH, HEIGHT = 8, 4
@@ -25,11 +25,8 @@ def texels_of(picture: str) -> TexelSet:
         height_px=HEIGHT,
         width_px=WIDTH,
         pixel=pixel.astype(np.uint32),
-        samples=SubsampleSet(
-            code=np.zeros((SUBSAMPLES // 2, n), np.uint32),
-            first=np.zeros(n, np.uint32),
-            triangle=np.zeros(1, np.uint32),
-        ),
+        triangle=np.zeros(n, np.uint32),
+        samples=SubsampleSet.none(),
         coverage=np.ones(n, np.float32),
         chart=charts.astype(np.uint32),
     )

@@ -35,12 +35,14 @@ def rasterise(mesh: MergedMesh, layout: LightmapLayout) -> TexelSet:
     covered, starts, fragments = _fragments(fixed, mesh.page[drawn], layout)
     code, n_used, coverage, owner = kernels.resolve(fixed, chart, covered, starts, fragments, width, height)
     first, triangle = kernels.gather_used(starts, n_used, fragments)
+    seen = drawn[triangle]
     return TexelSet(
         n_pages=layout.n_pages,
         height_px=height,
         width_px=width,
         pixel=covered,
-        samples=SubsampleSet(code, first, drawn[triangle]),
+        triangle=seen[first],
+        samples=SubsampleSet(code, first, seen),
         coverage=coverage,
         chart=owner,
     )

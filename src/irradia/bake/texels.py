@@ -21,6 +21,7 @@ class TexelSet:
     Attributes:
         n_pages, height_px, width_px: Shape of the pages.
         pixel: (N,) flat index (page · height + y) · width + x, ascending.
+        triangle: (N,) a triangle of each texel: the one under its first sub-sample.
         samples: SUBSAMPLES places on triangles for each texel. Texels that are covered in part repeat
             those they have; a sliver that no sub-sample hits is sampled at its point nearest to the
             texel's centre, so no touched texel is missed.
@@ -32,14 +33,10 @@ class TexelSet:
     height_px: int
     width_px: int
     pixel: U32
+    triangle: U32
     samples: SubsampleSet
     coverage: F32
     chart: U32
-
-    @property
-    def triangle(self) -> U32:
-        """(N,) a triangle of each texel: the one under its first sub-sample."""
-        return self.samples.triangle[self.samples.first]
 
     def locate(self, mesh: MergedMesh) -> tuple[U32, F64]:
         """Triangles (N, SUBSAMPLES) of the mesh that was drawn, and the weights of their corners.
@@ -61,10 +58,15 @@ class TexelSet:
         return replace(
             self,
             pixel=self.pixel[chosen],
+            triangle=self.triangle[chosen],
             samples=self.samples.take(chosen),
             coverage=self.coverage[chosen],
             chart=self.chart[chosen],
         )
+
+    def without_samples(self) -> TexelSet:
+        """The same list once its sub-samples are on the device: they are two thirds of it."""
+        return replace(self, samples=SubsampleSet.none())
 
     def to_pages(self, values: NDArray, fill: float = 0.0) -> NDArray:
         """Scatters (N, …) values to (pages, height, width, …)."""

@@ -37,6 +37,12 @@ class SubsampleSet:
     first: U32
     triangle: U32
 
+    @staticmethod
+    def none() -> SubsampleSet:
+        """No texels."""
+        nothing = np.empty(0, np.uint32)
+        return SubsampleSet(np.empty((SUBSAMPLES // 2, 0), np.uint32), nothing, nothing)
+
     def take(self, texels: NDArray[np.integer]) -> SubsampleSet:
         """Those of some texels only."""
         return SubsampleSet(np.ascontiguousarray(self.code[:, texels]), self.first[texels], self.triangle)
