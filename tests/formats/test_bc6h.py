@@ -151,6 +151,21 @@ def test_black_that_counts_stays_dark_beside_light() -> None:
     assert back[:, ::3].max() < 0.01 * rgb.max()
 
 
+def test_noise_in_the_dark_takes_little_from_the_light_beside_it() -> None:
+    """Purely logarithmic errors would spend a block on telling 2⁻¹⁴ from 2⁻¹¹."""
+    rgb = lightmap_like(16, 16)
+    dark = np.zeros((16, 16), np.bool_)
+    dark[:, ::4] = dark[1::4] = True
+    rgb[dark] = np.random.default_rng(32).uniform(2.0**-14, 2.0**-11, rgb[dark].shape)
+    errors = []
+    for threshold in (2.0**-8, 1e-9):
+        back = decode_bc6h(encode_bc6h(rgb, dark=threshold), 16, 16)
+        assert back[dark].max() < 2.0**-9
+        errors.append(rmse_stops(back[~dark], rgb[~dark]))
+    assert errors[0] < 0.1  # and 0.14 without least squares
+    assert errors[0] < 0.6 * errors[1]
+
+
 @pytest.mark.parametrize("size", [(1, 1), (4, 5), (7, 3), (13, 18)])
 def test_sides_need_not_be_multiples_of_four(size: tuple[int, int]) -> None:
     rgb = lightmap_like(*size)
