@@ -79,6 +79,7 @@ def look_along(world: World, origins: NDArray[np.float32], directions: NDArray[n
 def gather_sh(
     world: World,
     origins: NDArray[np.float32],
+    least_m: NDArray[np.float32],
     n_samples: int,
     seed: int,
     cache: LightCache | None = None,
@@ -88,6 +89,8 @@ def gather_sh(
     Args:
         world: The scene.
         origins: (N, 3) metres.
+        least_m: (N,) lamps without extent count as at least that far away: a probe stands for the
+            space around it, and in the very place of a lamp its light would be infinite.
         n_samples: Rays a point, and as many next-event samples.
         seed: Of this gather.
         cache: Stored light of mapped surfaces; None traces whole paths.
@@ -107,7 +110,8 @@ def gather_sh(
         stream = hash_u32((probe + dr.opaque(mi.UInt32, first)) ^ hash_u32(dr.opaque(mi.UInt32, seed)))
         last = dr.minimum((block + 1) * _SAMPLES_PER_BLOCK, total)
         origin = dr.gather(mi.Point3f, o, probe)
-        sums = _gather_loop(world, origin, block * _SAMPLES_PER_BLOCK, last, stream, cache)
+        least = dr.gather(mi.Float, mi.Float(np.ascontiguousarray(least_m[part], np.float32)), probe)
+        sums = _gather_loop(world, origin, least, block * _SAMPLES_PER_BLOCK, last, stream, cache)
         dr.eval(sums)  # all in one launch: each reduction would start one of its own
         channels = [dr.block_sum(channel, n_blocks) for colour in sums for channel in colour]
         stacked = np.stack([np.array(channel) for channel in channels], axis=1) / np.float32(n_samples)
@@ -118,6 +122,7 @@ def gather_sh(
 def _gather_loop(
     world: World,
     origin: mi.Point3f,
+    least: mi.Float,
     first: mi.UInt32,
     last: mi.UInt32,
     stream: mi.UInt32,
@@ -131,7 +136,7 @@ def _gather_loop(
 
         # ---- a ray in a uniformly drawn direction ----
         direction = _uniform_sphere(sampler.next_2d())
-        light, towards = _direct(world, origin, sampler)
+        light, towards = _direct(world, origin, least, sampler)
         ray = start(origin, direction, mi.Float(_UNIFORM), mi.Float(1.0), sampler, mi.Bool(True))
         radiance = trace(world, ray, cache).radiance * (1.0 / _UNIFORM)
 
@@ -142,7 +147,9 @@ def _gather_loop(
     return sums
 
 
-def _direct(world: World, origin: mi.Point3f, sampler: Sampler) -> tuple[mi.Color3f, mi.Vector3f]:
+def _direct(
+    world: World, origin: mi.Point3f, least: mi.Float, sampler: Sampler
+) -> tuple[mi.Color3f, mi.Vector3f]:
     """One next-event sample of radiance over its density, MIS-weighted, and where it comes from.
 
     The first bounce of lights that are lit live is left out.
@@ -155,7 +162,9 @@ def _direct(world: World, origin: mi.Point3f, sampler: Sampler) -> tuple[mi.Colo
     sample = world.lights.sample(world.geometry, world.emission, point, pick, u, mi.Bool(True))
     useful = dr.max(sample.weight) > 0.0
     useful &= ~world.lights.is_live(sample.punctual, useful)
-    weight = dr.select(sample.pdf > 0.0, sample.pdf / (sample.pdf + _UNIFORM), 1.0)
+    # Lamps keep 1e-6 m away by themselves, which makes their irradiance finite, and here dividable.
+    softened = dr.square(dr.minimum(dr.maximum(sample.distance, 1e-6) / least, 1.0))
+    weight = dr.select(sample.pdf > 0.0, sample.pdf / (sample.pdf + _UNIFORM), softened)
     arriving = world.transmittance(origin, sample.direction, sample.distance, useful)
     return dr.select(useful, sample.weight * arriving * weight, 0.0), sample.direction
 

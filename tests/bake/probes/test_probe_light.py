@@ -20,13 +20,14 @@ FAR_TRIANGLE = quad((500.0, 500.0, 500.0), (1e-3, 0, 0), (0, 1e-3, 0))  # a scen
 PLACE = np.array([[0.3, 0.2, -0.1]], np.float32)
 
 
-def gather(scene: Scene, places=PLACE, n_samples=1024, seed=1) -> np.ndarray:
+def gather(scene: Scene, places=PLACE, n_samples=1024, seed=1, least_m=1e-3) -> np.ndarray:
     from irradia.transport.probe_light import gather_sh
     from irradia.transport.world import World
 
     world = World(scene, merge(scene))
     result = np.zeros((len(places), 9, 3), np.float32)
-    for part, series in gather_sh(world, np.asarray(places, np.float32), n_samples, seed):
+    least = np.full(len(places), least_m, np.float32)
+    for part, series in gather_sh(world, np.asarray(places, np.float32), least, n_samples, seed):
         result[part] = series
     return result
 
@@ -59,6 +60,19 @@ def test_point_light_follows_the_inverse_square_and_its_direction():
     found = gather(scene_of(FAR_TRIANGLE, lights=(lamp,)), n_samples=8)[0]
     expected = sh_basis((0, 1, 0))[:, None] * np.array(lamp.intensity) / 4.0
     np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-5)
+
+
+def test_lamp_at_the_very_place_of_a_probe_stays_finite():
+    lamp = Light("point", (8.0, 4.0, 2.0), position=tuple(map(float, PLACE[0])))
+    sun = Light("directional", (3.0, 3.0, 3.0), direction=(0.0, -1.0, 0.0))
+    found = gather(scene_of(FAR_TRIANGLE, lights=(lamp, sun)), n_samples=4096, least_m=0.5)[0, 0]
+    expected = sh_basis((0, 1, 0))[0] * (3.0 + np.array(lamp.intensity) / 0.25)
+    np.testing.assert_allclose(found, expected, rtol=0.05)
+    near = replace(lamp, position=(0.3, 0.45, -0.1))
+    found = gather(scene_of(FAR_TRIANGLE, lights=(near,)), n_samples=8, least_m=0.5)[0]
+    np.testing.assert_allclose(
+        found, sh_basis((0, 1, 0))[:, None] * lamp.intensity * 4.0, rtol=1e-3, atol=1e-4
+    )
 
 
 def test_light_that_an_engine_draws_itself_is_left_out():
@@ -172,7 +186,8 @@ def test_one_kernel_gathers_any_number_of_probes_and_samples():
     with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
         dr.kernel_history_clear()
         for n_probes, n_samples in ((5, 64), (5, 500), (90, 130)):
-            list(gather_sh(world, np.zeros((n_probes, 3), np.float32), n_samples, seed=1))
+            places = np.zeros((n_probes, 4), np.float32)
+            list(gather_sh(world, places[:, :3], places[:, 3] + 1, n_samples, seed=1))
         history = [entry for entry in dr.kernel_history() if entry["type"] == dr.KernelType.JIT]
     assert len(history) == 3
     assert len({entry["hash"] for entry in history}) == 1

@@ -16,7 +16,7 @@ from irradia.bake.probes.options import ProbeOptions
 from irradia.bake.probes.placement import Placement, place_grid, place_random
 from irradia.bake.probes.survey import Survey, survey
 from irradia.bake.probes.window import window
-from irradia.core.progress import Progress, silent_progress
+from irradia.core.progress import Progress, Stage, silent_progress
 from irradia.core.rng import Seed
 from irradia.formats.probes import EMPTY, FILLED, NO_PROBE, VALID, ProbeOctree, ProbeSet
 from irradia.scene.layout import LightmapLayout
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 F32 = NDArray[np.float32]
 _QUICK_SAMPLES = 64  # for where an octree needs probes
+# Of the spacing: the mean of 1/r² over a ball around the probe is that at 1/√3 of its radius.
+_LEAST_DISTANCE = 0.3
 
 
 def bake_probes(
@@ -94,8 +96,8 @@ def _place(
         with progress.stage("probe places", options.count, "probes") as stage:
             return place_random(world, low, high, options, seed.child("places"), stage)
 
-    def quick_gather(places: F32) -> F32:
-        return _gather_at(world, cache, places, _QUICK_SAMPLES, seed.child("quick"))
+    def quick_gather(places: F32, spacing_m: F32) -> F32:
+        return _gather_at(world, cache, places, spacing_m, _QUICK_SAMPLES, seed.child("quick"))
 
     with progress.stage("probe places", LEVELS, "rounds") as stage:
         return place_octree(world, mesh, low, high, options.count, quick_gather, stage)
@@ -128,19 +130,30 @@ def _gather(
     valid = np.flatnonzero(seen.valid)
     places = (placement.positions + seen.offsets)[valid]
     seed = Seed(options.seed).child("probes").child("light")
+    spacing_m = placement.spacing_m[valid]
     with progress.stage("probe light", len(valid) * options.samples, "samples") as stage:
-        light[valid] = _gather_at(world, cache, places, options.samples, seed, stage.advance)
+        light[valid] = _gather_at(world, cache, places, spacing_m, options.samples, seed, stage)
     return light
 
 
-def _gather_at(world, cache, places, n_samples, seed, advance=None) -> F32:
+def _gather_at(
+    world: World,
+    cache: LightCache | None,
+    places: F32,
+    spacing_m: F32,
+    n_samples: int,
+    seed: Seed,
+    stage: Stage | None = None,
+) -> F32:
+    """(N, 9, 3) at places (N, 3)."""
     from irradia.transport.probe_light import gather_sh
 
     light = np.zeros((len(places), 9, 3), np.float32)
-    for part, series in gather_sh(world, places, n_samples, seed.uint32(), cache):
+    least_m = _LEAST_DISTANCE * spacing_m
+    for part, series in gather_sh(world, places, least_m, n_samples, seed.uint32(), cache):
         light[part] = series
-        if advance is not None:
-            advance(len(series) * n_samples)
+        if stage is not None:
+            stage.advance(len(series) * n_samples)
     return light
 
 

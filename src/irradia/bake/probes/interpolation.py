@@ -38,15 +38,19 @@ _CRUSH = 0.2  # weights below it fall off with their cube, which hides the tail 
 _POINTS_AT_ONCE = 1 << 15
 
 
-def irradiance_at(probes: ProbeSet, points: F64, normals: F64) -> F64:
-    """E on surfaces: (Q, 3) W·m⁻², linear Rec.709, never negative.
+def irradiance_at(probes: ProbeSet, points: F64, normals: F64, *, on_surface: bool = True) -> F64:
+    """E, (Q, 3) W·m⁻², linear Rec.709, never negative.
 
     Args:
         probes: The probes.
         points: (Q, 3) metres.
         normals: (Q, 3) unit.
+        on_surface: Whether the places lie on surfaces of the scene. Things that move between them
+            take the weights of the place alone: lifted along a normal, a place near a thin wall
+            that it faces would get through to the other side.
     """
-    return np.maximum(irradiance(interpolate(probes, points, normals), normals), 0.0)
+    series = interpolate(probes, points, normals if on_surface else None)
+    return np.maximum(irradiance(series, normals), 0.0)
 
 
 def interpolate(probes: ProbeSet, points: F64, normals: F64 | None = None) -> F64:
@@ -55,7 +59,7 @@ def interpolate(probes: ProbeSet, points: F64, normals: F64 | None = None) -> F6
     Args:
         probes: The probes.
         points: (Q, 3) metres.
-        normals: (Q, 3) of the surface there; None for places in free space.
+        normals: (Q, 3) of the scene's surface there; None for places in free space.
     """
     points = np.asarray(points, np.float64)
     result = np.zeros((len(points), *probes.coefficients.shape[1:]))

@@ -29,10 +29,10 @@ if TYPE_CHECKING:
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
-QuickGather = Callable[[F32], F32]  # places (N, 3) → coefficients (N, 9, 3)
+QuickGather = Callable[[F32, F32], F32]  # places (N, 3), spacing (N,) → coefficients (N, 9, 3)
 
 LEVELS = 3  # times that a coarse cell may be split
-_COARSE_SHARE = 1 / 16  # of all probes, for the coarse cells
+_COARSE_SHARE = 1 / 8  # of all probes, for the coarse cells
 _SURFACE_SAMPLES = 200_000
 _NEW_CORNERS = 10  # per split, about: neighbours share them
 _SMALL_CHANGE = 0.15  # of E: leaves without surfaces whose light changes less are left alone
@@ -50,6 +50,10 @@ class _Leaves:
     @property
     def size(self) -> I64:
         return 1 << (LEVELS - self.level)
+
+    @property
+    def n_corners(self) -> int:
+        return len(np.unique(pack(self.corners())))
 
     def corners(self) -> I64:
         """(C, 8, 3) in units of the finest cell."""
@@ -76,9 +80,11 @@ def place_octree(
     index = np.stack(np.meshgrid(*map(np.arange, shape), indexing="ij"), axis=-1).reshape(-1, 3)
     leaves = _Leaves(index << LEVELS, np.zeros(len(index), np.int64))
     known = _KnownPlaces(world, origin, unit, gather)
-    for _ in range(LEVELS):
+    for number in range(LEVELS):
         score = _scores(leaves, known, surface)
-        leaves = _split(leaves, score, max_probes)
+        n_now = leaves.n_corners
+        # Equal parts for all rounds, else the first takes all and nothing becomes fine.
+        leaves = _split(leaves, score, n_now + (max_probes - n_now) // (LEVELS - number))
         stage.advance()
     return _finish(leaves, known, origin, unit)
 
@@ -114,7 +120,7 @@ class _KnownPlaces:
             light = np.zeros((len(new), 6, 3), np.float32)
             if valid.any():
                 axes = np.concatenate([np.eye(3), -np.eye(3)])
-                series = self._gather(places[valid])
+                series = self._gather(places[valid], np.full(int(valid.sum()), self._unit, np.float32))
                 light[valid] = irradiance(series[:, None], axes)
             order = np.argsort(np.concatenate([self.key, new]), kind="stable")
             self.key = np.concatenate([self.key, new])[order]
@@ -163,10 +169,9 @@ def _holds_surface(leaves: _Leaves, surface: I64) -> NDArray[np.bool_]:
 
 
 def _split(leaves: _Leaves, score: F64, max_probes: int) -> _Leaves:
-    """Splits the leaves of highest score, as many as the number of probes allows."""
-    n_now = len(np.unique(pack(leaves.corners())))
+    """Splits the leaves of highest score, as many as ``max_probes`` corners allow."""
     order = np.argsort(-score * leaves.size, kind="stable")
-    order = order[score[order] > 0.0][: max((max_probes - n_now) // _NEW_CORNERS, 0)]
+    order = order[score[order] > 0.0][: max((max_probes - leaves.n_corners) // _NEW_CORNERS, 0)]
     while True:
         split = np.zeros(len(score), np.bool_)
         split[order] = True
@@ -177,7 +182,7 @@ def _split(leaves: _Leaves, score: F64, max_probes: int) -> _Leaves:
             np.concatenate([leaves.low[~split], children.reshape(-1, 3)]),
             np.concatenate([leaves.level[~split], level]),
         )
-        if len(order) == 0 or len(np.unique(pack(result.corners()))) <= max_probes:
+        if len(order) == 0 or result.n_corners <= max_probes:
             return result
         order = order[: len(order) * 3 // 4]
 

@@ -24,6 +24,7 @@ _QUICK_DIRECTIONS = 128
 _DIRECTIONS = 4096
 _LOBE_SHARPNESS = 256.0  # a texel of the map averages cos^256 around its direction, 6° wide
 REACH_IN_SPACINGS = 2.2  # a cell's diagonal and as much as a probe may be moved
+_BACKS_COUNT = 0.2  # as nearer than they are: on their other side is a room that the probe isn't in
 _MAX_MOVE = 0.45  # of the spacing, so that neighbours never change places
 _CLEARANCE = 0.2  # of the spacing: how far beyond the wall a probe is put; nearer, it sees along it badly
 _TRIES = 4
@@ -86,7 +87,8 @@ def survey(world: World, positions: F32, spacing_m: F32, stage: Stage) -> Survey
     for part, sight in look_around(world, places, directions.astype(np.float32)):
         validity[part] = 1.0 - sight.back.mean(axis=1)
         sky[part] = sight.sky @ sky_weights
-        seen = np.minimum(sight.distance, reach[part, None]).astype(np.float64)
+        blocked = sight.distance * np.where(sight.back, np.float32(_BACKS_COUNT), np.float32(1.0))
+        seen = np.minimum(blocked, reach[part, None]).astype(np.float64)
         mean, square = seen @ lobes, (seen * seen) @ lobes
         distance[part, :, 0] = mean
         distance[part, :, 1] = np.sqrt(np.maximum(square - mean * mean, 0.0))
