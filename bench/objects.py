@@ -1,6 +1,6 @@
 """What do 5,000 objects cost against the same triangles as one object?
 
-    python bench/objects.py [--resolution 1024] [--samples 64] [--repeats 3]
+    python bench/objects.py [--resolution 2048] [--samples 64] [--repeats 3]
 
 Bakes ``builtin:objects`` and ``builtin:objects-merged`` in turn, each bake a process of its own, and
 compares the time of one pass per sample: texels differ in number, since each object has borders of
@@ -73,7 +73,7 @@ def main() -> None:
 
 def _parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("--resolution", type=int, default=1024, help="page edge in texels")
+    parser.add_argument("--resolution", type=int, default=2048, help="page edge in texels")
     parser.add_argument("--samples", type=int, default=64)
     parser.add_argument("--repeats", type=int, default=3)
     return parser.parse_args()
