@@ -205,13 +205,14 @@ def _markdown(
                 f"| {_NAMES[bounces]} | {gain.samples[0]} | {gain.samples[1]} | {ours:.3g} | {theirs:.3g} "
                 f"| **{theirs / ours:.1f}×** | {relative:.1f}× |"
             )
+    samples = " ".join(map(str, arguments.samples))
     lines += [
         "",
         f"- {arguments.places:,} places strewn over all surfaces; reference {arguments.reference_samples:,} "
         f"samples a place; medians of {REPEATS}, taken in turn.",
         f"- {device}; commit {source_commit() or 'unknown'}.",
         f"- `python bench/many_lights.py --places {arguments.places} --resolution {arguments.resolution} "
-        f"--samples {' '.join(map(str, arguments.samples))} --reference-samples {arguments.reference_samples}`",
+        f"--samples {samples} --reference-samples {arguments.reference_samples}`",
     ]
     return "\n".join(lines) + "\n"
 
