@@ -65,6 +65,17 @@ def test_settings_that_nobody_reads_are_noted(gltf):
     assert any("radios" in note and "'radius'" in note for note in scene.notes)
 
 
+def test_node_of_a_mesh_and_a_light_may_speak_of_both(gltf):
+    gltf.use("KHR_lights_punctual")
+    gltf.json["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "point"}]}}
+    reference = {"KHR_lights_punctual": {"light": 0}}
+    gltf.triangle(extensions=reference, extras=extras(mode="mixed", casts=False))
+    scene = document_to_scene(gltf.document())
+    assert scene.lights[0].mode == "mixed"
+    assert not scene.instances[0].casts
+    assert scene.notes == ()
+
+
 def measured(gltf, profile, node=None, **reference):
     gltf.use("EXT_lights_ies", required=True)
     gltf.triangle()

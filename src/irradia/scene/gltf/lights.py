@@ -55,6 +55,11 @@ def read_lights(document: GltfDocument, nodes: list[PlacedNode], notes: ImportNo
     return tuple(placed)
 
 
+def carries_light(node: JsonView) -> bool:
+    """Whether a light stands at this node, so that its ``extras.irradia`` may speak of it."""
+    return _reference(node) is not None or node.extension("EXT_lights_ies") is not None
+
+
 def _reference(node: JsonView) -> tuple[int, str] | None:
     """The light that a node carries, also where an earlier bake took it out of loaders' sight."""
     for name, key in (("KHR_lights_punctual", "light"), ("IRRADIA_lighting", "bakedLight")):

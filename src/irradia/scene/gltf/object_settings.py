@@ -14,6 +14,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from irradia.scene.gltf.extras import irradia_extras, note_unknown_keys
+from irradia.scene.gltf.lights import LIGHT_SETTINGS, carries_light
 from irradia.scene.gltf.notes import ImportNotes
 from irradia.scene.gltf.view import JsonView
 
@@ -40,7 +41,8 @@ def read_object_settings(node: JsonView, notes: ImportNotes) -> ObjectSettings:
         InputError: A setting has the wrong type.
     """
     extras = irradia_extras(node)
-    note_unknown_keys(extras, _KEYS, notes)
+    known = (*_KEYS, *LIGHT_SETTINGS) if carries_light(node) else _KEYS
+    note_unknown_keys(extras, known, notes)
     scale = extras.number("lightmapScale", 1.0, minimum=0.0)
     return ObjectSettings(
         lightmap_scale=scale if extras.boolean("receives", True) else 0.0,
