@@ -22,6 +22,7 @@ from irradia.export.instances import GPU_INSTANCING, write_out_gpu_instances
 from irradia.export.lighting_extension import InstanceTables, bind_node
 from irradia.export.meshes import MeshVersions, freed_accessors, freed_materials, primitive_texcoord
 from irradia.export.moz_lightmap import MozLightmaps
+from irradia.export.occlusion_materials import OcclusionMaterials
 from irradia.export.primitives import DRACO, MOZ_LIGHTMAP, PrimitiveWriter
 from irradia.export.shadow_mask_extension import BakedShadows, add_shadow_mask, live_nodes
 from irradia.export.slots import Slots
@@ -96,6 +97,28 @@ def baked_glb(
     return _container(export.json, binary)
 
 
+def write_occlusion_glb(
+    path: Path | str, scene: Scene, layout: LightmapLayout, openness: NDArray[np.float32]
+) -> None:
+    """Writes the scene's document with ambient occlusion in its materials, whole or not at all.
+
+    Lights stay where they are. Meshes with several instances are written out, since a material binds
+    a texture, not a part of it.
+
+    Args:
+        path: The .glb.
+        scene: As imported.
+        layout: Where charts lie.
+        openness: (P, H, W, 3) in [0, 1], three times the same.
+    """
+    if scene.document is None:
+        raise InternalError("the scene to export has no document")
+    export = _Export(scene, scene.document, layout, openness, compatible=True, materials=OcclusionMaterials)
+    binary = export.run_without_light()
+    with write_atomic(path) as stream:
+        stream.write(_container(export.json, binary))
+
+
 class _Export:
     """One document on its way out: ``json`` is the copy that is changed."""
 
@@ -106,6 +129,7 @@ class _Export:
         layout: LightmapLayout,
         pages: NDArray[np.float32],
         compatible: bool,
+        materials: type[MozLightmaps] | type[OcclusionMaterials] = MozLightmaps,
     ) -> None:
         self.json: Json = copy.deepcopy(document.json)
         self._scene = scene
@@ -121,7 +145,7 @@ class _Export:
         self._bound = bind_nodes(scene, layout, nodes, write_out=compatible)
         free = freed_accessors(self.json, self._bound)
         self._slots = Slots(self.json, self._accessors, free)
-        self._moz = MozLightmaps(
+        self._materials = materials(
             self.json,
             self._slots,
             pages,
@@ -135,8 +159,8 @@ class _Export:
         """Changes the JSON and returns the binary chunk."""
         self._bind_nodes()
         writer = PrimitiveWriter(self._document, self._accessors, self._slots)
-        MeshVersions(self.json, self._scene, self._layout, writer, self._moz).write(self._bound)
-        used = {MOZ_LIGHTMAP} if self._moz.used else set()
+        MeshVersions(self.json, self._scene, self._layout, writer, self._materials).write(self._bound)
+        used = {MOZ_LIGHTMAP} if self._materials.used else set()
         if self._bound:
             lighting_extension.move_baked_lights(self.json, live_nodes(self._scene.lights))
             lighting_extension.add_lightmap(self.json, self._slots, self._pages, encoding)
@@ -144,8 +168,18 @@ class _Export:
                 add_directional(self.json, self._slots, directional, encoding)
             add_shadow_mask(self.json, self._slots, self._scene.lights, shadows)
             used.add(lighting_extension.NAME)
+        return self._finish(used)
+
+    def run_without_light(self) -> bytes:
+        """Like :meth:`run`, with the pages in materials alone and all lights on their nodes."""
+        writer = PrimitiveWriter(self._document, self._accessors, self._slots)
+        MeshVersions(self.json, self._scene, self._layout, writer, self._materials).write(self._bound)
+        lighting_extension.move_baked_lights(self.json, live=range(len(self.json.get("nodes", []))))
+        return self._finish(set())
+
+    def _finish(self, extensions: set[str]) -> bytes:
         self._embed_images()
-        self._list_extensions(used)
+        self._list_extensions(extensions)
         self.json["asset"]["generator"] = f"Irradia {irradia.__version__}"
         return self._slots.finish()
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from irradia.core.errors import InternalError
 from irradia.export.bindings import Binding, NodeBindings, page_uv
 from irradia.export.instances import GPU_INSTANCING
-from irradia.export.moz_lightmap import MozLightmaps
+from irradia.export.page_materials import PageMaterials
 from irradia.export.primitives import DRACO, PrimitiveWriter, accessors_of, lightmap_texcoord
 from irradia.scene.gltf.document import Json
 from irradia.scene.layout import LightmapLayout
@@ -24,17 +24,22 @@ class MeshVersions:
         scene: As it was baked.
         layout: As it was baked.
         writer: Writes split primitives.
-        moz: Makes materials that read a page.
+        materials: Makes those that read a page.
     """
 
     def __init__(
-        self, json: Json, scene: Scene, layout: LightmapLayout, writer: PrimitiveWriter, moz: MozLightmaps
+        self,
+        json: Json,
+        scene: Scene,
+        layout: LightmapLayout,
+        writer: PrimitiveWriter,
+        materials: PageMaterials,
     ) -> None:
         self._json = json
         self._scene = scene
         self._layout = layout
         self._writer = writer
-        self._moz = moz
+        self._materials = materials
 
     def write(self, bound: dict[int, NodeBindings]) -> None:
         """Gives each node the version that its bindings need; one of them keeps the mesh's index."""
@@ -78,11 +83,14 @@ class MeshVersions:
     def _with_page(self, primitive: Json, binding: Binding, texcoord: int) -> Json:
         """The primitive with its material, and those of its variants, reading the page."""
         page = int(self._layout.page[binding.instances[0]])
-        lit: Json = {**primitive, "material": self._moz.material(primitive.get("material"), page, texcoord)}
+        lit: Json = {
+            **primitive,
+            "material": self._materials.material(primitive.get("material"), page, texcoord),
+        }
         variants = lit.get("extensions", {}).get(_VARIANTS)
         if variants is not None:
             mappings = [
-                {**mapping, "material": self._moz.material(mapping["material"], page, texcoord)}
+                {**mapping, "material": self._materials.material(mapping["material"], page, texcoord)}
                 for mapping in variants["mappings"]
             ]
             lit["extensions"] = {**lit["extensions"], _VARIANTS: {**variants, "mappings": mappings}}

@@ -11,18 +11,16 @@ space in which loaders filter: the mean over a few texels is right, however dark
 
 from __future__ import annotations
 
-import copy
-
 import numpy as np
 from numpy.typing import NDArray
 
 from irradia.core.dither import dithered_srgb8
+from irradia.export.page_materials import PageMaterials, PagePicture
 from irradia.export.primitives import MOZ_LIGHTMAP
 from irradia.export.slots import Slots
 from irradia.formats.png import encode_png
 from irradia.scene.gltf.document import Json
 
-_LINEAR, _CLAMP = 9729, 33071
 _CLIPPED_PERCENTILE = 99.95
 _MAX_HEADROOM = 4.0
 _BAND_ROWS = 256
@@ -45,15 +43,12 @@ def moz_scale(page: NDArray[np.float32]) -> float:
     return 2.0 ** int(np.ceil(np.log2(covered)))
 
 
-class MozLightmaps:
-    """Adds pages as textures, and materials that read them, to ``json``, which is changed.
+class MozLightmaps(PageMaterials):
+    """Materials whose MOZ_lightmap reads a page.
 
     Args:
-        json: The document being written.
-        slots: Where image bytes go.
+        json, slots, free_materials, free_textures: See :class:`PageMaterials`.
         pages: (P, H, W, 3) E/π.
-        free_materials: Materials that nothing else uses: their first copy takes their place.
-        free_textures: Textures of an earlier bake, whose places new pages take.
     """
 
     def __init__(
@@ -65,69 +60,22 @@ class MozLightmaps:
         free_materials: set[int],
         free_textures: list[int],
     ) -> None:
-        self._json = json
-        self._originals: list[Json] = copy.deepcopy(json.get("materials", []))
-        self._free = set(free_materials)
-        self._free_textures = list(free_textures)
-        self._slots = slots
+        super().__init__(json, slots, free_materials=free_materials, free_textures=free_textures)
         self._pages = pages
-        self._textures: dict[int, tuple[int, float]] = {}
-        self._materials: dict[tuple[int | None, int, int], int] = {}
+        self._intensity: dict[int, float] = {}
 
-    def material(self, material: int | None, page: int, texcoord: int) -> int:
-        """A copy of a material (glTF's default, if None) with the page as its lightmap."""
-        key = (material, page, texcoord)
-        if key not in self._materials:
-            texture, intensity = self._texture(page)
-            clone: Json = {} if material is None else copy.deepcopy(self._originals[material])
-            clone.setdefault("extensions", {})[MOZ_LIGHTMAP] = {
-                "index": texture,
-                "texCoord": texcoord,
-                "intensity": intensity,
-            }
-            if material is not None and material in self._free:
-                self._free.remove(material)
-                self._json["materials"][material] = clone
-                self._materials[key] = material
-            else:
-                self._materials[key] = _append(self._json, "materials", clone)
-            self._light_lower_levels(clone, page, texcoord)
-        return self._materials[key]
+    def _read_page(self, material: Json, page: int, texcoord: int) -> None:
+        texture = self._texture(page)
+        material.setdefault("extensions", {})[MOZ_LIGHTMAP] = {
+            "index": texture,
+            "texCoord": texcoord,
+            "intensity": self._intensity[page],
+        }
 
-    def _light_lower_levels(self, material: Json, page: int, texcoord: int) -> None:
-        """Points a material's MSFT_lod to copies that read the page too."""
-        lod = material["extensions"].get("MSFT_lod")
-        if lod is not None:
-            known = [index for index in lod.get("ids", []) if 0 <= index < len(self._originals)]
-            lit = [self.material(index, page, texcoord) for index in known]
-            material["extensions"]["MSFT_lod"] = {**lod, "ids": lit}
-
-    @property
-    def used(self) -> bool:
-        """Whether any material reads a page."""
-        return bool(self._materials)
-
-    def _texture(self, page: int) -> tuple[int, float]:
-        """Index of a page's texture, and its scale."""
-        if page not in self._textures:
-            pixels = self._pages[page]
-            scale = moz_scale(pixels)
-            image: Json = {"name": f"lightmap {page}", "mimeType": "image/png", "bufferView": -1}
-            png = encode_png(_coded(pixels, scale))
-            self._slots.add_blob(png, lambda view: image.update(bufferView=view))
-            self._textures[page] = self._place(image), scale
-        return self._textures[page]
-
-    def _place(self, image: Json) -> int:
-        """Index of a texture that shows ``image``."""
-        if self._free_textures:
-            texture = self._free_textures.pop(0)
-            self._json["images"][self._json["textures"][texture]["source"]] = image
-            return texture
-        source = _append(self._json, "images", image)
-        sampler = {"magFilter": _LINEAR, "minFilter": _LINEAR, "wrapS": _CLAMP, "wrapT": _CLAMP}
-        texture = {"source": source, "sampler": _append(self._json, "samplers", sampler)}
-        return _append(self._json, "textures", texture)
+    def _picture(self, page: int) -> PagePicture:
+        scale = moz_scale(self._pages[page])
+        self._intensity[page] = scale
+        return PagePicture(f"lightmap {page}", encode_png(_coded(self._pages[page], scale)))
 
 
 def _coded(page: NDArray[np.float32], scale: float) -> NDArray[np.uint8]:
@@ -136,9 +84,3 @@ def _coded(page: NDArray[np.float32], scale: float) -> NDArray[np.uint8]:
     return np.concatenate(
         [dithered_srgb8(page[band] / np.float32(scale), first_row=band.start) for band in bands]
     )
-
-
-def _append(json: Json, key: str, entry: Json) -> int:
-    table = json.setdefault(key, [])
-    table.append(entry)
-    return len(table) - 1
