@@ -131,15 +131,10 @@ class LightmapBake:
         """(N, 3) E/π as known now."""
         return self.light.to_host(self.bake.estimate())
 
-    def result(self, progress: Progress | None = None, estimate: F32 | None = None) -> LightmapResult:
-        """The map as it is now, finished for use.
-
-        Args:
-            progress: Shows stages.
-            estimate: (N, 3) E/π in place of what this bake has found: parts of an earlier one.
-        """
+    def result(self, progress: Progress | None = None) -> LightmapResult:
+        """The map as it is now, finished for use; ``progress`` shows stages."""
         progress = progress or silent_progress()
-        estimate = self.estimate() if estimate is None else estimate
+        estimate = self.estimate()
         finisher = self._finisher(progress)
         pages = finisher.irradiance(estimate)
         return LightmapResult(
@@ -227,13 +222,13 @@ class LightmapBake:
             "tracing_seconds": seconds,
             "samples_per_second": now.n_rays / seconds,
             "rays_per_second": (now.n_rays + n_direct) / seconds,
-            "noise_p95": self._noise(),
+            "noise_p95": self.noise(),
             "clamped_off_share": self.bake.clamped_off_share(),
             "valid_share": float(self.valid.mean()),
             "clamped_materials": light.world.clamped_materials,
         }
 
-    def _noise(self) -> float | None:
+    def noise(self) -> float | None:
         """95th percentile of the result's relative standard error, where rounds have shown it."""
         if not self.meter.knows:
             return None

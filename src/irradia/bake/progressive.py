@@ -306,6 +306,15 @@ class ProgressiveBake:
         now.n_rays = int(np.array(now.total.rays).sum(dtype=np.int64))
         now.epochs.append(Epoch(self._mean_rays(), self.light.mean(self.estimate())))
 
+    def fill_in(self, before: TexelSums) -> None:
+        """Takes an earlier bake's samples for the texels that have had none."""
+        from irradia.transport.backend import dr
+
+        now = self.progression
+        bare = now.total.plus(now.part).rays == 0
+        now.total = before.where(bare, now.total)
+        dr.eval(now.total)
+
     def cache_hash(self) -> str:
         """Of the light that the last epoch gathers from."""
         return hashlib.sha256(np.array(self._known_before).tobytes()).hexdigest()

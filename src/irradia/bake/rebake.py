@@ -3,7 +3,8 @@
 A finished bake leaves what it knew of its texels: their light, and a coarse pass over all of them.
 The next one traces the coarse pass again, with the same random numbers, so that the two differ only
 where light does. Texels of changed objects, and those whose light has moved by more than 1 %, are
-baked anew; the others keep their light and are marked stale where anything has moved at all.
+baked anew; the others keep their light and are marked stale where anything has moved at all. What is
+compared is always the light that a texel was last baked in, so that many small edits add up.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ from irradia.scene.types import F32, U32
 VERSION = 1
 MOVED = 0.01  # of a texel's light: what calls for new samples
 _STALE = 1e-4
+_SUMS = ("gathered", "arrived", "rays", "samples")
 
 
 @dataclass(frozen=True)
@@ -38,17 +40,15 @@ class Memory:
         fingerprint: Of the scene; see :mod:`irradia.scene.fingerprint`.
         settings: What must be the same for the coarse passes to be comparable; plain values.
         pixel: (N,) the texels.
-        irradiance_over_pi: (N, 3) as traced.
-        coarse: (N, 3) the pass that changes are found by.
-        sample_count: (N,) rays in the result.
+        coarse: (N, 3) the pass that changes are found by, as it was when each texel was last baked.
+        sums: All samples that make the result; see :meth:`TexelSums.to_arrays`.
     """
 
     fingerprint: Mapping[str, Any]
     settings: Mapping[str, Any]
     pixel: U32
-    irradiance_over_pi: F32
     coarse: F32
-    sample_count: U32
+    sums: Mapping[str, NDArray]
 
 
 @dataclass(frozen=True)
@@ -78,9 +78,8 @@ def write_memory(path: Path, memory: Memory) -> None:
             stream,
             header=np.frombuffer(json.dumps(header).encode(), np.uint8),
             pixel=memory.pixel,
-            irradiance_over_pi=memory.irradiance_over_pi,
             coarse=memory.coarse,
-            sample_count=memory.sample_count,
+            **{f"sums/{name}": array for name, array in memory.sums.items()},
         )
 
 
@@ -101,9 +100,8 @@ def read_memory(path: Path) -> Memory | None:
                 header["fingerprint"],
                 header["settings"],
                 file["pixel"],
-                file["irradiance_over_pi"],
                 file["coarse"],
-                file["sample_count"],
+                {name: file[f"sums/{name}"] for name in _SUMS},
             )
     except (OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile, EOFError) as error:
         raise InputError(

@@ -38,6 +38,7 @@ class Shard:
         cache_hash: Of the frozen cache; parts that gathered from another don't belong together.
         direct: Sums before the last epoch, by name.
         slices: Sums of each slice, by name.
+        spent_s: Tracing time.
     """
 
     number: int
@@ -47,6 +48,7 @@ class Shard:
     cache_hash: str
     direct: dict[str, NDArray]
     slices: tuple[dict[str, NDArray], ...]
+    spent_s: float = 0.0
 
 
 def write_shard(path: Path, shard: Shard) -> None:
@@ -59,6 +61,7 @@ def write_shard(path: Path, shard: Shard) -> None:
         "identity": shard.identity,
         "cache_hash": shard.cache_hash,
         "n_slices": len(shard.slices),
+        "spent_s": shard.spent_s,
     }
     arrays: dict[str, NDArray] = {"header": np.frombuffer(json.dumps(header).encode(), np.uint8)}
     arrays |= {f"direct/{key}": value for key, value in shard.direct.items()}
@@ -88,6 +91,7 @@ def read_shard(path: Path) -> Shard:
             header["cache_hash"],
             _under(arrays, "direct"),
             tuple(_under(arrays, f"slice-{i}") for i in range(header["n_slices"])),
+            float(header["spent_s"]),
         )
     except FileNotFoundError as error:
         raise InputError("there is no such file", where=str(path)) from error
@@ -146,3 +150,4 @@ def join(bake: ProgressiveBake, shards: Sequence[Shard], identity: dict[str, Any
         return sums
 
     bake.take(load(shards[0].direct), (load(part) for shard in shards for part in shard.slices))
+    bake.progression.spent_s = sum(shard.spent_s for shard in shards)

@@ -11,6 +11,7 @@ from irradia.cli import options
 from irradia.cli.output import INTERRUPTED, finish
 
 if TYPE_CHECKING:
+    from irradia.bake.occlusion import OcclusionOptions
     from irradia.cli.bake_job import BakeJob, BakeSummary
 
 
@@ -33,10 +34,17 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--mode",
-    type=click.Choice(["full", "indirect", "direct"]),
+    type=click.Choice(["full", "indirect", "direct", "ao"]),
     default="full",
     show_default=True,
-    help="Which light: indirect leaves out the first bounce of punctual lights.",
+    help="Which light: indirect leaves out the first bounce of punctual lights, direct all others; "
+    "ao is ambient occlusion instead.",
+)
+@click.option(
+    "--ao-distance",
+    type=click.FloatRange(min=0.0, min_open=True),
+    metavar="M",
+    help="--mode ao: surfaces farther away don't occlude; inf for all.  [default: 1, less in small scenes]",
 )
 @click.option(
     "--view-first",
@@ -102,6 +110,7 @@ def make_job(
     adaptive: bool,
     indirect_clamp: float | None,
     mode: str,
+    ao_distance: float | None,
     view_first: str | None,
     shard: tuple[int, int] | None,
     only: tuple[str, ...],
@@ -153,7 +162,7 @@ def make_job(
             adaptive=adaptive,
             indirect_clamp=indirect_clamp,
             integrator=integrator,  # type: ignore[arg-type]
-            mode=mode,  # type: ignore[arg-type]
+            mode="full" if mode == "ao" else mode,  # type: ignore[arg-type]
             directional=directional,  # type: ignore[arg-type]
             normal_maps=normal_maps,
             seams=not no_seams,
@@ -172,6 +181,7 @@ def make_job(
         if probes is None
         else ProbeOptions.parse(probes, samples=probe_samples, seed=seed, fast_rays=fast_rays),
         formats=parse_formats(formats),
+        occlusion=_occlusion(mode, samples, ao_distance, seed),
         resume=resume,
         checkpoint_s=checkpoint_s,
         view_first=view_first,
@@ -180,19 +190,62 @@ def make_job(
     )
 
 
+def _occlusion(
+    mode: str, samples: int | None, distance_m: float | None, seed: int
+) -> OcclusionOptions | None:
+    from irradia.bake.occlusion import OcclusionOptions
+    from irradia.core.errors import InputError
+
+    if mode != "ao":
+        if distance_m is not None:
+            raise InputError("goes with --mode ao", where="--ao-distance")
+        return None
+    return OcclusionOptions(samples or OcclusionOptions.samples, distance_m, seed)
+
+
 def describe(job: BakeJob, summary: BakeSummary) -> str:
-    """Three lines of results."""
+    """Three lines of results: what was baked, how right it is, where it lies."""
+    from irradia.cli.bake_occlusion import describe_occlusion
+
+    if job.occlusion is not None:
+        return describe_occlusion(job, summary)
     record = summary.record
-    lightmap, stats, found = record["lightmap"], record["stats"], record["against_reference"]
+    lightmap, stats = record["lightmap"], record["stats"]
     pages = f"{lightmap['n_pages']} page{'s' if lightmap['n_pages'] > 1 else ''}"
-    lines = [
-        f"{record['scene']}: {lightmap['n_texels']:,} texels on {pages} of "
-        f"{lightmap['width_px']} × {lightmap['height_px']}, {stats['samples_per_texel']:.4g} samples each, "
-        f"baked in {record['bake_s']:.1f} s ({record['samples_per_second'] / 1e6:.2f} M samples/s)",
-        ("No reference was rendered (--no-report)." if summary.complete else "Stopped early: no reference.")
-        if found is None
-        else f"Against the path-traced reference: HDR-FLIP {found['flip']:.4f}, "
-        f"mean ratio {found['mean_ratio']:.4f}, relMSE {found['relmse']:.2e}",
-        f"In {job.out}: {', '.join(summary.files)}",
-    ]
-    return "\n".join(lines)
+    size = f"{lightmap['width_px']} × {lightmap['height_px']}"
+    return "\n".join(
+        [
+            f"{record['scene']}: {lightmap['n_texels']:,} texels on {pages} of {size}, "
+            f"{stats['samples_per_texel']:.4g} samples each, "
+            f"baked in {record['bake_s']:.1f} s ({record['samples_per_second'] / 1e6:.2f} M samples/s)"
+            + _ending(record["ended_by"], stats["noise_p95"]),
+            _accuracy(job, record),
+            f"In {job.out}: {', '.join(summary.files)}",
+        ]
+    )
+
+
+def _ending(ended_by: str, noise: float | None) -> str:
+    """Why it ended, where that isn't plain, and with what noise, where that is known."""
+    ends = {
+        "samples": "",
+        "noise": "; the noise is as low as asked",
+        "time": "; its time was up",
+        "interrupt": "; stopped early",
+    }
+    known = "" if noise is None else f"; under {noise:.2%} of noise in 95 % of the texels"
+    return ends[ended_by] + known
+
+
+def _accuracy(job: BakeJob, record: dict[str, Any]) -> str:
+    found = record["against_reference"]
+    if found is not None:
+        return (
+            f"Against the path-traced reference: HDR-FLIP {found['flip']:.4f}, "
+            f"mean ratio {found['mean_ratio']:.4f}, relMSE {found['relmse']:.2e}"
+        )
+    if record["ended_by"] == "interrupt":
+        return "No reference was rendered: the bake is unfinished."
+    if job.bake.mode == "direct" and job.views is not None:
+        return "No reference was rendered: direct light alone is not what a camera sees."
+    return "No reference was rendered (--no-report)."

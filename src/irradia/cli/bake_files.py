@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import time
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from irradia.core.colour import automatic_exposure_ev, picture_srgb8
 from irradia.core.files import write_text_atomic
 from irradia.core.progress import Progress
 from irradia.formats.lightmap import LightmapFile, make_lightmap, page_path
+from irradia.scene.layout import LightmapLayout
 from irradia.scene.types import Scene
 
 
@@ -36,7 +38,7 @@ def write_products(
     from irradia.export.map_files import write_maps
     from irradia.export.shadow_mask_extension import BakedShadows
 
-    origin = _provenance(job, baked.scene, time.perf_counter() - start)
+    origin = make_provenance(job, baked.scene, time.perf_counter() - start)
     result = baked.result
     lightmap = make_lightmap(result.pages, result.coverage, origin.reproducible(), _texel_channels(baked))
     with progress.stage("files"):
@@ -92,6 +94,8 @@ def _write_companions(folder: Path, job: BakeJob, baked: Baked, origin: dict[str
         write_probe_files(folder, baked.probes)
     if baked.memory is not None:
         write_memory(folder / MEMORY, baked.memory)
+    elif not baked.complete and (job.out / MEMORY).exists():  # what --resume builds on
+        shutil.copyfile(job.out / MEMORY, folder / MEMORY)
 
 
 def bake_record(
@@ -99,30 +103,19 @@ def bake_record(
 ) -> dict[str, Any]:
     """What was baked, how fast and how right: plain values, fit for JSON."""
     stats = baked.result.stats
-    covered = lightmap.covered
     return {
         "scene": baked.scene.name,
+        "ended_by": baked.ended_by,
         "samples_per_second": stats["samples_per_second"],
         "launches_per_pass": stats["launches_per_pass"],
-        "lightmap": {
-            "quantity": lightmap.quantity,
-            "scale": lightmap.scale,
-            "exposure_ev": lightmap.exposure_ev,
-            "n_pages": len(lightmap.pages),
-            "width_px": lightmap.pages.shape[2],
-            "height_px": lightmap.pages.shape[1],
-            "n_texels": int(covered.sum()),
-            "n_invalid_texels": int(np.count_nonzero(~baked.result.valid)),
-            "utilisation": float(covered.mean()),
-            "texels_per_metre": baked.layout.texels_per_metre,
-        },
+        "lightmap": map_record(lightmap, baked.layout, int(np.count_nonzero(~baked.result.valid))),
         "shadow_mask": _shadow_channels(baked),
         "probes": None if baked.probes is None else len(baked.probes.positions),
         "update": None
         if baked.update is None
         else {
-            "rebaked_share": float(baked.update.rebake.mean()),
-            "stale_share": float(baked.update.stale.mean()),
+            "rebaked_share": _share(baked.update.rebake, baked.result.valid),
+            "stale_share": _share(baked.update.stale, baked.result.valid),
         },
         "stats": stats,
         "bake_s": round(baked.bake_s, 4),
@@ -131,6 +124,27 @@ def bake_record(
         "against_reference": _against_reference(baked),
         "notes": [*baked.scene.notes, *baked.layout.notes],
         "provenance": origin,
+    }
+
+
+def _share(chosen: NDArray[np.bool_], among: NDArray[np.bool_]) -> float:
+    return float(chosen[among].mean()) if among.any() else 0.0
+
+
+def map_record(lightmap: LightmapFile, layout: LightmapLayout, n_invalid_texels: int) -> dict[str, Any]:
+    """What the pages are."""
+    covered = lightmap.covered
+    return {
+        "quantity": lightmap.quantity,
+        "scale": lightmap.scale,
+        "exposure_ev": lightmap.exposure_ev,
+        "n_pages": len(lightmap.pages),
+        "width_px": lightmap.pages.shape[2],
+        "height_px": lightmap.pages.shape[1],
+        "n_texels": int(covered.sum()),
+        "n_invalid_texels": n_invalid_texels,
+        "utilisation": float(covered.mean()),
+        "texels_per_metre": layout.texels_per_metre,
     }
 
 
@@ -156,15 +170,22 @@ def _against_reference(baked: Baked) -> dict[str, Any] | None:
     }
 
 
-def _provenance(job: BakeJob, scene: Scene, wall_s: float) -> provenance.Provenance:
+def make_provenance(job: BakeJob, scene: Scene, wall_s: float) -> provenance.Provenance:
+    """How a bake came about: inputs, choices, versions, device, time."""
     from irradia.transport.backend import device
 
+    files = [job.light.env] if job.light.env is not None else []
+    files += [path for spec in (*job.overrides, *job.ies) if (path := _named_file(spec)) is not None]
     inputs = {Path(job.scene).name: scene_hash(scene)}
-    if job.light.env is not None:
-        inputs[job.light.env.name] = provenance.sha256_file(job.light.env)
+    inputs |= {path.name: provenance.sha256_file(path) for path in files}
     return provenance.record(
         "bake", job.config(), seed=job.bake.seed, inputs=inputs, device=device, wall_s=wall_s
     )
+
+
+def _named_file(spec: str) -> Path | None:
+    """The file in ``FILE`` or ``NAME=FILE``, where there is one."""
+    return next((Path(part) for part in (spec, spec.rpartition("=")[2]) if Path(part).is_file()), None)
 
 
 def _write_picture(path: Path, radiance: NDArray[np.float32]) -> None:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+import math
 import time
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from irradia import __version__
 from irradia.bake.lightmap import BakeOptions, LightmapBake, LightmapResult, Selection
@@ -45,6 +46,11 @@ PRODUCTS = (
     "bake.memory",
     "report.html",
 )
+EndedBy = Literal["samples", "noise", "time", "interrupt"]
+
+# Choices that change nothing of what is traced.
+_NOT_TRACED = ("views", "threads", "device", "shard", "compatible", "probes", "formats")
+_NOT_TRACED_OF_BAKE = ("time_s", "denoise", "seams")
 
 
 @dataclass(frozen=True)
@@ -97,6 +103,8 @@ class BakeJob:
         plain = asdict(self)
         plain["scene"] = Path(self.scene).name
         plain["light"]["env"] = self.light.env.name if self.light.env else None
+        if self.occlusion is not None and self.occlusion.distance_m == math.inf:
+            plain["occlusion"]["distance_m"] = "inf"  # which JSON has no number for
         for name in ("out", "resume", "checkpoint_s"):
             del plain[name]
         return plain
@@ -110,6 +118,7 @@ class Baked:
         bake_s: Wall time from opening the file to the finished pages.
         view: For the report, rendered after that.
         complete: Whether the bake came to its end rather than being stopped.
+        ended_by: "samples", "noise" or "time", whichever limit was reached; "interrupt" where none was.
         probes: Where they were asked for.
         memory: For the next ``--update``, where there is to be one.
         update: What an edit has asked for.
@@ -121,6 +130,7 @@ class Baked:
     bake_s: float
     view: View | None
     complete: bool
+    ended_by: EndedBy
     probes: ProbeSet | None = None
     memory: Memory | None = None
     update: Update | None = None
@@ -152,11 +162,16 @@ def run_bake(job: BakeJob, progress: Progress, shards: Sequence[Shard] = ()) -> 
     Raises:
         InputError: Something in the file or among the options is wrong.
     """
+    from irradia.cli.bake_checks import check_job
     from irradia.cli.bake_files import write_products
+    from irradia.cli.bake_occlusion import run_occlusion
     from irradia.transport import use_device
 
+    check_job(job)
     start = time.perf_counter()
     use_device(job.device, job.threads)
+    if job.occlusion is not None:
+        return run_occlusion(job, job.occlusion, progress)
     with staged_folder(job.out, stale=PRODUCTS) as folder:
         baked = _bake(job, progress, shards)
         record = write_products(folder, job, baked, progress, start)
@@ -198,9 +213,11 @@ def run_shard(job: BakeJob, progress: Progress) -> Path:
         InputError: Something in the file or among the options is wrong.
     """
     from irradia.bake.shards import write_shard
+    from irradia.cli.bake_checks import check_job
     from irradia.cli.bake_trace import trace_shard
     from irradia.transport import use_device
 
+    check_job(job)
     use_device(job.device, job.threads)
     scene, _, bake = _prepare(job, progress)
     shard = trace_shard(bake, job, identity(job, scene, bake.texels), progress)
@@ -234,11 +251,23 @@ def _bake(job: BakeJob, progress: Progress, shards: Sequence[Shard]) -> Baked:
         join(bake.bake, shards, same)
     else:
         complete = trace(bake, job, same, progress)
-    result = bake.result(progress, revision.merged(bake.estimate()))
+    memory = revision.fill_in(progress) if revision else None
+    result = bake.result(progress)
     scene = replace(scene, lights=result.lights)
     probes = _probes(job, scene, layout, result, progress) if complete else None
     bake_s = time.perf_counter() - start
-    baked = Baked(scene, layout, result, bake_s, None, complete, probes, revision.memory(), revision.update)
+    baked = Baked(
+        scene,
+        layout,
+        result,
+        bake_s,
+        None,
+        complete,
+        _ended_by(job, bake, complete),
+        probes,
+        memory if complete else None,
+        revision.update if revision else None,
+    )
     if job.views is None or not complete or job.bake.mode == "direct":
         return baked
     from irradia.cli.bake_views import render_view
@@ -246,6 +275,15 @@ def _bake(job: BakeJob, progress: Progress, shards: Sequence[Shard]) -> Baked:
 
     shown = result.pages if result.all_light is None else result.all_light
     return replace(baked, view=render_view(scene, BakedLight(layout, shown), job.views, progress))
+
+
+def _ended_by(job: BakeJob, bake: LightmapBake, complete: bool) -> EndedBy:
+    if not complete:
+        return "interrupt"
+    if not bake.bake.complete:
+        return "time"
+    target, found = job.bake.noise, bake.noise()
+    return "noise" if target is not None and found is not None and found <= target else "samples"
 
 
 def _probes(
@@ -269,16 +307,28 @@ def _selection(job: BakeJob, scene: Scene) -> Selection:
 
 
 def identity(job: BakeJob, scene: Scene, texels: TexelSet) -> dict[str, Any]:
-    """What must be the same for a stopped bake to go on as if it had never stopped."""
+    """What must be the same for a stopped bake to go on as if it had never stopped: plain JSON values.
+
+    How the finished light is written, and by when, is no part of it.
+    """
+    from irradia.scene.fingerprint import fingerprint
+    from irradia.transport.backend import device
+
     config = job.config()
-    del config["views"], config["threads"], config["shard"], config["bake"]["time_s"]
-    return {
+    for name in _NOT_TRACED:
+        del config[name]
+    for name in _NOT_TRACED_OF_BAKE:
+        del config["bake"][name]
+    same = {
         "scene": scene_hash(scene),
         "environment": environment_hash(scene),
+        "overrides and profiles": fingerprint(scene) if job.overrides or job.ies else None,
         "texels": provenance.sha256_bytes(texels.pixel.tobytes()),
         "version": __version__,
+        "device": device.kind,
         **{f"option {key}": value for key, value in config.items()},
     }
+    return json.loads(json.dumps(same))  # as it comes back from a file: without tuples
 
 
 def scene_hash(scene: Scene) -> str:

@@ -66,4 +66,5 @@ def trace_shard(bake: LightmapBake, job: BakeJob, identity: dict[str, Any], prog
         bake.bake.cache_hash(),
         bake.bake.progression.direct.to_arrays(),
         tuple(bake.bake.keep_slices),
+        bake.bake.progression.spent_s,
     )

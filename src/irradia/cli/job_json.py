@@ -4,15 +4,20 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
+from irradia.bake.occlusion import OcclusionOptions
 from irradia.bake.options import BakeOptions
+from irradia.bake.probes.options import ProbeOptions
 from irradia.cli.bake_job import BakeJob
 from irradia.cli.bake_views import ViewOptions
 from irradia.cli.lighting import LightOptions
 from irradia.core.errors import InputError
 from irradia.scene.lightmap_uv.options import LayoutOptions
 from irradia.scene.load import LoadOptions
+
+T = TypeVar("T")
+_LISTS = ("only", "overrides", "ies", "formats")
 
 
 def job_to_json(job: BakeJob) -> dict[str, Any]:
@@ -34,26 +39,30 @@ def job_from_json(plain: dict[str, Any], out: Path, scene: str | None = None) ->
     Raises:
         InputError: The values are of another version.
     """
-    values = dict(plain)
-    light = dict(values.pop("light"))
-    light["env"] = None if light["env"] is None else Path(light["env"])
-    if light.get("env_color") is not None:
-        light["env_color"] = tuple(light["env_color"])
-    views = values.pop("views")
     try:
+        values = dict(plain)
+        light = dict(values["light"])
+        light["env"] = None if light["env"] is None else Path(light["env"])
+        light["env_color"] = None if light["env_color"] is None else tuple(light["env_color"])
         return BakeJob(
             **{
                 **values,
+                **{name: tuple(values[name]) for name in _LISTS},
                 "scene": scene or values["scene"],
-                "only": tuple(values.get("only", ())),
-                "shard": tuple(values["shard"]) if values.get("shard") else None,
+                "shard": None if values["shard"] is None else tuple(values["shard"]),
                 "out": out,
                 "load": LoadOptions(**values["load"]),
                 "light": LightOptions(**light),
                 "layout": LayoutOptions(**values["layout"]),
                 "bake": BakeOptions(**values["bake"]),
-                "views": None if views is None else ViewOptions(**views),
+                "views": _maybe(ViewOptions, values["views"]),
+                "probes": _maybe(ProbeOptions, values["probes"]),
+                "occlusion": _maybe(OcclusionOptions, values["occlusion"]),
             }
         )
-    except TypeError as error:
+    except (TypeError, KeyError, ValueError) as error:
         raise InputError("these shards were traced by another version of Irradia") from error
+
+
+def _maybe(options: type[T], values: dict[str, Any] | None) -> T | None:
+    return None if values is None else options(**values)

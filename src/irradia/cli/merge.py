@@ -44,7 +44,7 @@ def command(
     parts = in_order([read_shard(path) for path in shards])
     job = job_from_json(parts[0].job, out, scene)
     views = None if no_report else job.views
-    job = replace(job, shard=None, views=views, device=device, threads=threads)  # type: ignore[arg-type]
+    job = replace(job, shard=None, views=views, device=device, threads=threads)
     summary = run_bake(job, stderr_progress(), shards=parts)
     result: dict[str, Any] = {**summary.record, "out": str(out), "files": list(summary.files)}
     finish(as_json, result, describe(job, summary))

@@ -87,6 +87,13 @@ class TexelSums:
         arrived = [a + b for a, b in zip(self.arrived, other.arrived, strict=True)]
         return TexelSums(gathered, arrived, self.rays + other.rays, self.samples + other.samples)
 
+    def where(self, mask: mi.Bool, other: TexelSums) -> TexelSums:
+        """These sums where the mask holds, the other's elsewhere."""
+        gathered = [dr.select(mask, a, b) for a, b in zip(self.gathered, other.gathered, strict=True)]
+        arrived = [dr.select(mask, a, b) for a, b in zip(self.arrived, other.arrived, strict=True)]
+        rays = dr.select(mask, self.rays, other.rays)
+        return TexelSums(gathered, arrived, rays, dr.select(mask, self.samples, other.samples))
+
     def without_rays(self) -> TexelSums:
         """The next-event samples alone."""
         empty = TexelSums.empty(len(self.rays), len(self.gathered))
