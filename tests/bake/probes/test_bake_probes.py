@@ -166,3 +166,9 @@ def test_same_seed_same_bytes_on_one_and_two_threads():
     digests = {_digest(threads, 7) for threads in (1, 2, 2)}
     assert len(digests) == 1
     assert _digest(2, 8) not in digests
+
+
+def test_scene_that_is_solid_all_over_is_refused():
+    rock = scene_of(centred_box((40, 40, 40)), lights=(LAMP,))
+    with pytest.raises(InputError, match="free space"):
+        bake_probes(rock, None, None, ProbeOptions("grid", spacing_m=22.0, samples=1))

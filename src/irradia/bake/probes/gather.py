@@ -16,6 +16,7 @@ from irradia.bake.probes.options import ProbeOptions
 from irradia.bake.probes.placement import Placement, place_grid, place_random
 from irradia.bake.probes.survey import Survey, survey
 from irradia.bake.probes.window import window
+from irradia.core.errors import InputError
 from irradia.core.progress import Progress, Stage, silent_progress
 from irradia.core.rng import Seed
 from irradia.formats.probes import EMPTY, FILLED, NO_PROBE, VALID, ProbeOctree, ProbeSet
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from irradia.transport.world import World
 
 F32 = NDArray[np.float32]
+_TURN = "Check that the scene's surfaces face the space that is lit."
 _QUICK_SAMPLES = 64  # for where an octree needs probes
 # Of the spacing: the mean of 1/r² over a ball around the probe is that at 1/√3 of its radius.
 _LEAST_DISTANCE = 0.3
@@ -60,6 +62,8 @@ def bake_probes(
         seen = survey(world, placement.positions, placement.spacing_m, stage)
     if isinstance(placement.structure, ProbeOctree):
         placement, seen = _without_buried(placement, placement.structure, seen)
+    if not seen.valid.any():
+        raise InputError("expected free space for probes, found none", where=scene.name, fix=_TURN)
     light = _gather(world, cache, placement, seen, options, progress)
     damped, strength = window(light)
     probes = _probe_set(scene, placement, seen, damped)
