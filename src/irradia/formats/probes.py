@@ -190,7 +190,11 @@ def _arrays(probes: ProbeSet) -> dict[str, Any]:
         arrays[name] = np.asarray(getattr(probes, name), "<f4")
     match probes.structure:
         case ProbeGrid(origin, spacing, shape):
-            arrays |= {"grid_origin": origin, "grid_spacing": spacing, "grid_shape": np.array(shape, np.int32)}
+            arrays |= {
+                "grid_origin": origin,
+                "grid_spacing": spacing,
+                "grid_shape": np.array(shape, np.int32),
+            }
         case ProbeOctree(origin, size_m, cells, corners):
             arrays |= {"octree_origin": origin, "octree_size": np.float32(size_m)}
             arrays |= {"octree_cells": cells, "octree_corners": corners}
