@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from irradia.core import write_text_atomic
 from irradia.core.device import cpu_name
 from irradia.core.provenance import source_commit
+from irradia.export.map_files import texel_weights
 from irradia.formats.bc6h import DARK, decode_bc6h, encode_bc6h
 from irradia.formats.lightmap import LightmapFile
 from support.baked_lightmap import lightmap_of
@@ -81,7 +82,7 @@ def _parse() -> argparse.Namespace:
 def _measure(source: str, lightmap: LightmapFile, n_partitions: int, repeats: int) -> Row:
     page = lightmap.pages[0] / np.float32(lightmap.scale)
     covered = lightmap.covered[0]
-    weights = (covered | (page > 0.0).any(axis=-1)).astype(np.float32)
+    weights = texel_weights(lightmap, 0)
     seconds = []
     for _ in range(repeats):
         start = time.perf_counter()

@@ -22,6 +22,7 @@ from irradia.formats.lightmap import LightmapFile, page_attributes, page_path, u
 
 DEFAULT_FORMATS = ("exr",)
 _RIM_PX = 2  # one that a bilinear lookup reaches, and one for a uv's rounding
+_RIM_WEIGHT = 0.25  # a lookup there is mostly of the chart's own texels
 
 
 @dataclass(frozen=True)
@@ -98,6 +99,22 @@ def read_map(path: Path | str) -> NDArray[np.float32]:
     return rgb * np.float32(unit_of(attributes, path))
 
 
+def texel_weights(lightmap: LightmapFile, page: int) -> NDArray[np.float32]:
+    """How much errors of a page's texels count in BC6H, and texels in smaller mip levels.
+
+    (H, W): 1 on charts, less on the rim that bilinear lookups reach, 0 beyond and where nothing is.
+    """
+    covered = lightmap.coverage[page] > 0.0
+    reached = covered.copy()
+    for rows in (reached, reached.T):
+        for _ in range(_RIM_PX):
+            before = rows.copy()
+            rows[1:] |= before[:-1]
+            rows[:-1] |= before[1:]
+    filled = (lightmap.pages[page] > 0.0).any(axis=-1)
+    return np.where(covered, 1.0, np.where(reached & filled, _RIM_WEIGHT, 0.0)).astype(np.float32)
+
+
 def _write_exr(path: Path, lightmap: LightmapFile, page: int, _levels: int, *, half: bool) -> None:
     write_lightmap_page(path, lightmap, page, half=half)
 
@@ -125,7 +142,7 @@ def _write_ktx2(path: Path, lightmap: LightmapFile, page: int, n_levels: int, *,
         _over_scale(lightmap, page)[None],
         encoding,
         _text(lightmap, page, lightmap.scale),
-        coverage=_weights(lightmap, page)[None],
+        coverage=texel_weights(lightmap, page)[None],
         n_levels=n_levels,
     )
     with write_atomic(path) as stream:
@@ -134,19 +151,6 @@ def _write_ktx2(path: Path, lightmap: LightmapFile, page: int, n_levels: int, *,
 
 def _over_scale(lightmap: LightmapFile, page: int) -> NDArray[np.float32]:
     return np.asarray(lightmap.pages[page], np.float32) * np.float32(1.0 / lightmap.scale)
-
-
-def _weights(lightmap: LightmapFile, page: int) -> NDArray[np.float32]:
-    """(H, W): 1 for texels that bilinear lookups on charts reach, 0 beyond and where nothing was filled."""
-    covered = lightmap.coverage[page] > 0.0
-    reached = covered.copy()
-    for rows in (reached, reached.T):
-        for _ in range(_RIM_PX):
-            before = rows.copy()
-            rows[1:] |= before[:-1]
-            rows[:-1] |= before[1:]
-    filled = covered | (lightmap.pages[page] > 0.0).any(axis=-1)
-    return (reached & filled).astype(np.float32)
 
 
 def _text(lightmap: LightmapFile, page: int, unit: float) -> dict[str, str]:
