@@ -19,7 +19,7 @@ from irradia.scene.types import U8, Camera, Material
 
 CELLS, SIZE_M = 768, 384.0
 CELL_M = SIZE_M / CELLS
-WATER_M = 9.0
+WATER_M = 4.0
 RELIEF_M = 60.0
 N_ROCK_SHAPES, N_ROCKS = 4, 180
 N_TREE_SHAPES, N_TREES = 3, 420
@@ -36,14 +36,14 @@ def build() -> GltfDocument:
         Material("ground", base_color_texture=painted, metallic=0.0, specular=0.0), tile_m=SIZE_M
     )
     scene.object("ground", (_ground(height), ground))
-    water = scene.material(matte("water", (0.05, 0.10, 0.11)))
+    water = scene.material(matte("water", (0.05, 0.10, 0.11)), tile_m=SIZE_M)
     scene.object("lake", (floor(SIZE_M, SIZE_M, WATER_M, n_x=8, n_z=8), water), lightmap_scale=0.25)
     _scatter_rocks(scene, height)
     _scatter_trees(scene, height)
-    eye, target = (-62.0, 0.0, 118.0), (30.0, 14.0, -60.0)
-    eye_y = height_at(height, eye[0], eye[2]) + 9.0
+    eye, target = (92.0, 0.0, -104.0), (22.0, 26.0, 30.0)
+    eye_y = height_at(height, eye[0], eye[2]) + 13.0
     scene.camera(Camera(look_at((eye[0], eye_y, eye[2]), target), yfov_rad=0.8, name="camera"))
-    scene.sky(sun_elevation_deg=24, sun_azimuth_deg=235, turbidity=3, sun=True)
+    scene.sky(sun_elevation_deg=24, sun_azimuth_deg=300, turbidity=3, sun=True)
     return scene.build()
 
 
