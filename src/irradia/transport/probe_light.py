@@ -158,14 +158,16 @@ def _direct(
         return mi.Color3f(0.0), mi.Vector3f(0.0, 0.0, 1.0)
     u, pick = sampler.next_2d(), sampler.next_1d()
     no_side = mi.Vector3f(0.0)
-    point = SurfacePoint(position=origin, origin=origin, ng=no_side, ns=no_side)
-    sample = world.lights.sample(world.geometry, world.emission, point, pick, u, mi.Bool(True))
+    finest = mi.UInt32(0) if world.geometry.has_lods else None
+    point = SurfacePoint(position=origin, origin=origin, ng=no_side, ns=no_side, lod=finest)
+    emission = world.emission_seen_from(point)
+    sample = world.lights.sample(world.geometry, emission, point, pick, u, mi.Bool(True))
     useful = dr.max(sample.weight) > 0.0
     useful &= ~world.lights.is_live(sample.punctual, useful)
     # Lamps keep 1e-6 m away by themselves, which makes their irradiance finite, and here dividable.
     softened = dr.square(dr.minimum(dr.maximum(sample.distance, 1e-6) / least, 1.0))
     weight = dr.select(sample.pdf > 0.0, sample.pdf / (sample.pdf + _UNIFORM), softened)
-    arriving = world.transmittance(origin, sample.direction, sample.distance, useful)
+    arriving = world.transmittance(origin, sample.direction, sample.distance, useful, finest)
     return dr.select(useful, sample.weight * arriving * weight, 0.0), sample.direction
 
 

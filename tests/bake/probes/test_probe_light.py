@@ -126,6 +126,20 @@ def test_emissive_card_counts_once_by_its_solid_angle():
     assert abs(irradiance(expected, (0.0, 1.0, 0.0))[0] / (np.pi * factor * 5.0) - 1) < 0.15
 
 
+def test_of_a_lamp_with_levels_of_detail_only_the_finest_shines():
+    fine, coarse = (
+        quad((-0.4, 1, -0.4), (0.8, 0, 0), (0, 0, 0.8)),
+        quad((-0.4, 0.9, -0.4), (0.8, 0, 0), (0, 0, 0.8)),
+    )
+    lamp = Material("lamp", base_color=(0, 0, 0, 1), metallic=0.0, specular=0.0, emission=(5.0, 3.0, 1.0))
+    alone = replace(scene_of(fine), materials=(lamp,))
+    both = replace(scene_of(fine, coarse), materials=(lamp,))
+    levels = tuple(replace(i, lod_group=0, lod_level=n) for n, i in enumerate(both.instances))
+    place = [(0.0, 0.0, 0.0)]
+    found = gather(replace(both, instances=levels), place, 1 << 13)
+    np.testing.assert_allclose(found, gather(alone, place, 1 << 13), atol=0.02 * found.max())
+
+
 def test_environment_with_a_small_sun_is_found():
     radiance = np.full((32, 64, 3), 0.1, np.float32)
     radiance[8, 48] = 5000.0
