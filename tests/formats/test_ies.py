@@ -63,6 +63,11 @@ def test_multiplier_and_ballast_count_and_the_second_factor_in_old_editions_alon
     assert table.candela[0, 0] == pytest.approx(100 * factor)
 
 
+@pytest.mark.parametrize("before", [b"\xef\xbb\xbf", b"\r\n \r\n"])
+def test_marks_and_blanks_before_the_first_line_do_not_hide_the_edition(before):
+    assert decode_ies(before + text("IES:LM-63-2019") + b"\x1a", "lamp.ies").edition == 2019
+
+
 def test_tilt_tables_are_passed_over_with_a_note():
     plain = decode_ies(text(), "lamp.ies")
     tilted = decode_ies(text(tilt="TILT=INCLUDE\n1\n3\n0 45 90\n1.0 0.9 0.8"), "lamp.ies")

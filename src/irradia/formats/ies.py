@@ -16,6 +16,7 @@ how it is mounted) is passed over with a note.
 
 from __future__ import annotations
 
+import codecs
 import math
 import re
 from dataclasses import dataclass
@@ -82,7 +83,8 @@ def decode_ies(data: bytes, where: str) -> IesTable:
     if len(data) > MAX_BYTES:
         raise InputError(f"expected at most {MAX_BYTES} bytes of IES data, found {len(data)}", where=where)
     # Names of makers come in every code page; the numbers are ASCII.
-    lines = data.decode("latin-1").replace("\x1a", "").splitlines()
+    text = data.removeprefix(codecs.BOM_UTF8).decode("latin-1").replace("\x1a", "")
+    lines = text.lstrip().splitlines()
     edition, keywords, tilt, body = _header(lines, where)
     numbers = _Numbers(body, where)
     notes = [] if tilt == "NONE" else [f"TILT={tilt} is ignored: the lamp shines as in its test position"]
