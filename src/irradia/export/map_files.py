@@ -88,15 +88,18 @@ def read_map(path: Path | str) -> NDArray[np.float32]:
     """Reads one page of any of the formats as (H, W, 3) linear E/π.
 
     Raises:
-        InputError: No such file, no lightmap of ours, damaged, or absurdly large.
+        InputError: No such file, no lightmap of ours, damaged, or too large.
     """
     reader = _READERS.get(Path(path).suffix.lower())
     if reader is None:
         raise InputError(
             f"expected a lightmap ending in {', '.join(_READERS)}, found {Path(path).name}", where=str(path)
         )
-    rgb, attributes = reader(path)
-    return rgb * np.float32(unit_of(attributes, path))
+    try:
+        rgb, attributes = reader(path)
+        return rgb * np.float32(unit_of(attributes, path))
+    except MemoryError as error:
+        raise InputError("this map takes more memory than there is", where=str(path)) from error
 
 
 def texel_weights(lightmap: LightmapFile, page: int) -> NDArray[np.float32]:
