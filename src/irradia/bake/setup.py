@@ -177,7 +177,7 @@ def _rounds(
     number, count = selection.shard
     if count > len(ends):
         raise InputError(
-            f"expected at most {len(ends)} shards for this bake, found {count}",
+            f"this bake can be divided into {len(ends)} at most, found {count}",
             where="--shard",
             fix="More samples or texels can be divided among more machines.",
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -9,22 +10,52 @@ import click
 
 from irradia.cli import options
 from irradia.cli.output import INTERRUPTED, finish
+from irradia.cli.sections import SectionedCommand
 
 if TYPE_CHECKING:
     from irradia.bake.occlusion import OcclusionOptions
     from irradia.cli.bake_job import BakeJob, BakeSummary
 
 
-@click.command("bake")
+_MANY_FILES = 12
+
+SECTIONS = {
+    "Results": ("--out", "--format", "--compatible", "--no-report", "--reference-spp", "--json"),
+    "When it is done": ("--samples", "--time", "--noise", "--adaptive", "--view-first"),
+    "Texels": ("--resolution", "--texels-per-metre"),
+    "What is baked": (
+        *("--mode", "--ao-distance", "--directional", "--normal-maps", "--probes", "--probe-samples"),
+        *("--only", "--update"),
+    ),
+    "The scene": (
+        *("--env", "--env-rotation", "--env-strength", "--env-color", "--sky", "--no-default-light"),
+        *("--ies", "--material-override", "--variant", "--pose-time"),
+    ),
+    "How it is traced": (
+        "--integrator",
+        "--indirect-clamp",
+        "--fast-rays",
+        "--no-denoise",
+        "--no-seams",
+        "--seed",
+    ),
+    "Interruptions and machines": ("--resume", "--checkpoint", "--shard", "--device", "--threads"),
+}
+
+
+@click.command("bake", cls=SectionedCommand, sections=SECTIONS)
 @click.argument("scene")
 @click.option("-o", "--out", type=click.Path(path_type=Path), required=True, help="Folder for the results.")
 @options.budget_options
 @click.option(
     "--resolution",
-    type=click.IntRange(options.MIN_RESOLUTION_PX, options.MAX_RESOLUTION_PX),
+    type=options.Whole(options.MIN_RESOLUTION_PX, options.MAX_RESOLUTION_PX),
+    metavar="PX",
     help="Edge of the one page, in texels.  [default: about a million texels]",
 )
-@click.option("--texels-per-metre", type=options.POSITIVE, help="Density; as many pages as that needs.")
+@click.option(
+    "--texels-per-metre", type=options.POSITIVE, metavar="X", help="Density; as many pages as that needs."
+)
 @click.option(
     "--integrator",
     type=click.Choice(["cached", "path"]),
@@ -37,12 +68,13 @@ if TYPE_CHECKING:
     type=click.Choice(["full", "indirect", "direct", "ao"]),
     default="full",
     show_default=True,
-    help="Which light: indirect leaves out the first bounce of punctual lights, direct all others; "
-    "ao is ambient occlusion instead.",
+    metavar="MODE",
+    help="full light; indirect: without the first bounce of punctual lights; direct: the first bounce "
+    "alone; ao: ambient occlusion instead.",
 )
 @click.option(
     "--ao-distance",
-    type=click.FloatRange(min=0.0, min_open=True),
+    type=options.REACH,
     metavar="M",
     help="--mode ao: surfaces farther away don't occlude; inf for all.  [default: 1, less in small scenes]",
 )
@@ -218,23 +250,33 @@ def describe(job: BakeJob, summary: BakeSummary) -> str:
             f"{record['scene']}: {lightmap['n_texels']:,} texels on {pages} of {size}, "
             f"{stats['samples_per_texel']:.4g} samples each, "
             f"baked in {record['bake_s']:.1f} s ({record['samples_per_second'] / 1e6:.2f} M samples/s)"
-            + _ending(record["ended_by"], stats["noise_p95"]),
+            + _ending(record),
             _accuracy(job, record),
-            f"In {job.out}: {', '.join(summary.files)}",
+            files_line(job.out, summary.files),
         ]
     )
 
 
-def _ending(ended_by: str, noise: float | None) -> str:
-    """Why it ended, where that isn't plain, and with what noise, where that is known."""
+def files_line(out: Path, files: Sequence[str]) -> str:
+    """Where the results are; where they are many, maps are only counted."""
+    if len(files) <= _MANY_FILES:
+        return f"In {out}: {', '.join(files)}"
+    others = [name for name in files if not name.startswith("lightmap")]
+    return f"In {out}: {len(files) - len(others)} maps (lightmap…), {', '.join(others)}"
+
+
+def _ending(record: dict[str, Any]) -> str:
+    """Why it ended, where that isn't plain; the noise and what a clamp has cost, where that is known."""
     ends = {
         "samples": "",
         "noise": "; the noise is as low as asked",
         "time": "; its time was up",
         "interrupt": "; stopped early",
     }
-    known = "" if noise is None else f"; under {noise:.2%} of noise in 95 % of the texels"
-    return ends[ended_by] + known
+    noise, lost = record["stats"]["noise_p95"], record["stats"]["clamped_off_share"]
+    text = ends[record["ended_by"]]
+    text += "" if noise is None else f"; under {noise:.2%} of noise in 95 % of the texels"
+    return text + ("" if lost is None else f"; the clamp has cut off {lost:.2%} of the light")
 
 
 def _accuracy(job: BakeJob, record: dict[str, Any]) -> str:

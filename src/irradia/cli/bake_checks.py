@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from irradia.cli.bake_trace import STATE
 from irradia.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -57,6 +58,10 @@ def check_job(job: BakeJob) -> None:
     Raises:
         InputError: Names the options.
     """
+    if job.resume and not (job.out / STATE).exists():
+        raise InputError(
+            "there is no interrupted bake here", where=str(job.out), fix="Bake without --resume."
+        )
     given = _given(job)
     for conflict in CONFLICTS:
         found = [other for other in conflict.others if other in given]

@@ -21,17 +21,55 @@ MAX_RESOLUTION_PX = 16384
 MAX_SEED = (1 << 32) - 1
 
 
-class Finite(click.FloatRange):
-    """A number in a range; click's own range lets NaN and infinity through."""
+class Finite(click.ParamType):
+    """A number in a range, neither infinite nor NaN.
+
+    click's own ranges let both through, and write the range into the help.
+    """
 
     name = "number"
 
+    def __init__(self, low: float = -math.inf, *, low_open: bool = False) -> None:
+        self._low, self._low_open = low, low_open
+
     def convert(self, value: str | float, param: click.Parameter | None, ctx: click.Context | None) -> float:
         """The number, or a usage error."""
-        number = float(super().convert(value, param, ctx))  # type: ignore[arg-type]
+        try:
+            number = float(value)
+        except ValueError:
+            self.fail(f"{value!r} is not a number.", param, ctx)
         if not math.isfinite(number):
             self.fail(f"{value} is not a finite number.", param, ctx)
+        if number < self._low or (self._low_open and number == self._low):
+            self.fail(f"expected {'over' if self._low_open else 'at least'} {self._low:g}, found {value}.")
         return number
+
+
+class Whole(click.ParamType):
+    """A whole number in a range that the help needn't show."""
+
+    name = "number"
+
+    def __init__(self, low: int, high: int) -> None:
+        self._low, self._high = low, high
+
+    def convert(self, value: str | int, param: click.Parameter | None, ctx: click.Context | None) -> int:
+        """The number, or a usage error."""
+        try:
+            number = int(value)
+        except ValueError:
+            self.fail(f"{value!r} is not a whole number.", param, ctx)
+        if not self._low <= number <= self._high:
+            self.fail(f"expected {self._low} to {self._high}, found {number}.", param, ctx)
+        return number
+
+
+class Reach(Finite):
+    """A positive distance; infinity is one."""
+
+    def convert(self, value: str | float, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """The distance, or a usage error."""
+        return math.inf if value in ("inf", math.inf) else super().convert(value, param, ctx)
 
 
 class ShardPart(click.ParamType):
@@ -51,8 +89,9 @@ class ShardPart(click.ParamType):
 
 SHARD = ShardPart()
 ANY = Finite()
-NOT_NEGATIVE = Finite(min=0.0)
-POSITIVE = Finite(min=0.0, min_open=True)
+NOT_NEGATIVE = Finite(0.0)
+POSITIVE = Finite(0.0, low_open=True)
+REACH = Reach(0.0, low_open=True)
 
 # The parameters of lighting_options, as click names them.
 LIGHT_NAMES = ("env", "env_rotation", "env_strength", "env_color", "sky", "no_default_light")
@@ -61,7 +100,12 @@ json_option = click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON object on stdout and nothing else there."
 )
 seed_option = click.option(
-    "--seed", type=click.IntRange(0, MAX_SEED), default=0, show_default=True, help="Root of all randomness."
+    "--seed",
+    type=Whole(0, MAX_SEED),
+    default=0,
+    show_default=True,
+    metavar="N",
+    help="Root of all randomness.",
 )
 device_option = click.option(
     "--device",
@@ -71,13 +115,14 @@ device_option = click.option(
     help="What traces the rays.",
 )
 threads_option = click.option(
-    "--threads", type=click.IntRange(1, 1024), help="Threads of the CPU device.  [default: all]"
+    "--threads", type=Whole(1, 1024), metavar="N", help="Threads of the CPU device.  [default: all]"
 )
 
 
 reference_spp_option = click.option(
     "--reference-spp",
-    type=click.IntRange(2, MAX_SAMPLES),
+    type=Whole(2, MAX_SAMPLES),
+    metavar="N",
     default=128,
     show_default=True,
     help="Samples per pixel of the report's reference.",
@@ -90,8 +135,9 @@ def budget_options(function: F) -> F:
         function,
         click.option(
             "--samples",
-            type=click.IntRange(1, MAX_SAMPLES),
-            help=f"Gather rays per texel.  [default: {DEFAULT_SAMPLES}, without --time and --noise]",
+            type=Whole(1, MAX_SAMPLES),
+            metavar="N",
+            help=f"Rays per texel.  [default: {DEFAULT_SAMPLES}, unless --time or --noise is given]",
         ),
         click.option("--time", "time_s", type=POSITIVE, metavar="S", help="Stop tracing after this long."),
         click.option(
@@ -105,7 +151,7 @@ def budget_options(function: F) -> F:
             "--indirect-clamp",
             type=POSITIVE,
             metavar="X",
-            help="Cut what a ray may bring, against fireflies; the loss is reported.",
+            help="Cut what a ray may bring to X, against fireflies; the light lost is reported.",
         ),
     )
 
@@ -117,7 +163,8 @@ def map_options(function: F) -> F:
         click.option(
             "--directional",
             type=click.Choice(["dominant", "rnm", "sh", "mono-sh"]),
-            help="Maps of the light's direction as well, for normal maps.",
+            metavar="MODE",
+            help="Maps of the light's direction as well, for normal maps: dominant, rnm, sh or mono-sh.",
         ),
         click.option("--normal-maps", is_flag=True, help="Receive light on normal-mapped normals."),
         click.option("--no-seams", is_flag=True, help="Leave seams between charts as they are."),
@@ -126,7 +173,8 @@ def map_options(function: F) -> F:
         ),
         click.option(
             "--probe-samples",
-            type=click.IntRange(1, MAX_SAMPLES),
+            type=Whole(1, MAX_SAMPLES),
+            metavar="N",
             default=1024,
             show_default=True,
             help="Rays per probe.",
@@ -137,13 +185,15 @@ def map_options(function: F) -> F:
             default="exr",
             show_default=True,
             metavar="LIST",
-            help="Of the maps, separated by commas: exr, hdr, rgbm, ktx2-half … (docs/formats.md).",
+            help="Of the maps: exr, exr-half, hdr, rgbm, rgbm-linear, ktx2-half, ktx2-rgb9e5, ktx2-bc6h; "
+            "several with commas, or all.",
         ),
         click.option(
             "--material-override",
             multiple=True,
-            metavar="FILE|NAME:CHANNEL=VALUE",
-            help="Albedo, emission or opacity of materials whose shader isn't glTF's.",
+            metavar="SPEC",
+            help="FILE.json or NAME:CHANNEL=VALUE: albedo, emission or opacity of materials whose shader "
+            "isn't glTF's.",
         ),
         click.option(
             "--ies",
@@ -169,7 +219,7 @@ def lighting_options(function: F) -> F:
             help="Environment image (.hdr, .exr), equirectangular.",
         ),
         click.option("--env-rotation", type=ANY, default=0.0, metavar="DEG", help="Turns it about +Y."),
-        click.option("--env-strength", type=NOT_NEGATIVE, default=1.0, help="Multiplies it."),
+        click.option("--env-strength", type=NOT_NEGATIVE, default=1.0, metavar="X", help="Multiplies it."),
         click.option("--env-color", metavar="R,G,B", help="Uniform environment: linear radiance."),
         click.option("--sky", is_flag=True, help="Sun and sky."),
         click.option(

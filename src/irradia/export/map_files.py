@@ -73,7 +73,7 @@ def write_maps(
 
 
 def parse_formats(text: str) -> tuple[str, ...]:
-    """``"exr,ktx2-half"`` as names of ``FORMATS``, each once, in the order given.
+    """``"exr,ktx2-half"`` as names of ``FORMATS``, each once, in the order given; ``"all"`` as all.
 
     Raises:
         InputError: One is unknown, or there is none.
@@ -81,6 +81,8 @@ def parse_formats(text: str) -> tuple[str, ...]:
     names = [name.strip().lower() for name in text.split(",") if name.strip()]
     if not names:
         raise InputError("expected at least one format", where="--format", fix=f"Choose of {_all_names()}.")
+    if names == ["all"]:
+        return tuple(FORMATS)
     return tuple(dict.fromkeys(_format(name).name for name in names))
 
 
