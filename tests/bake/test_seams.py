@@ -129,6 +129,16 @@ def test_a_fold_with_shared_normals_is_a_seam():
     assert find_seam_points(mesh, layout).weight.sum() == pytest.approx(32.0)
 
 
+def test_a_sharp_fold_is_no_seam_even_with_shared_normals():
+    between = np.tile([0.707, 0, 0.707], (4, 1))
+    mesh, layout = mesh_of(
+        quad((0, 0, 0), (1, 0, 0), (0, 1, 0), (4, 4)),
+        quad((1, 0, 0), (0, 0, -1), (0, 1, 0), (30, 4)),
+        normals=[between, between],
+    )
+    assert len(find_seam_points(mesh, layout)) == 0
+
+
 def test_squares_one_upon_the_other_have_no_seam():
     square = ((0, 0, 0), (1, 0, 0), (0, 1, 0))
     mesh, layout = mesh_of(quad(*square, (4, 4)), quad(*square, (30, 4)))

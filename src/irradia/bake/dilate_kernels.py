@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 KNOWN, WANTED, _QUEUED = 0, 1, 2
 
@@ -143,13 +143,13 @@ def grow(values, state, n_rings):
         state[queue[k] // width, queue[k] % width] = WANTED
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True)
 def halve(image, known):
     """Means over the known texels of each 2 × 2 square, (⌈H/2⌉, ⌈W/2⌉, C), and which have any."""
     height, width, channels = image.shape
     coarse = np.zeros(((height + 1) // 2, (width + 1) // 2, channels), np.float32)
     coarse_known = np.zeros(coarse.shape[:2], np.bool_)
-    for y in prange(coarse.shape[0]):
+    for y in range(coarse.shape[0]):
         for x in range(coarse.shape[1]):
             count = 0
             for v in range(2 * y, min(2 * y + 2, height)):
@@ -165,11 +165,11 @@ def halve(image, known):
     return coarse, coarse_known
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True)
 def fill_from(coarse, image, known):
     """Fills unknown texels, in place, by bilinear magnification of an image half as large."""
     height, width, channels = image.shape
-    for y in prange(height):
+    for y in range(height):
         near_y = y // 2
         far_y = min(max(near_y + (1 if y % 2 else -1), 0), coarse.shape[0] - 1)
         for x in range(width):

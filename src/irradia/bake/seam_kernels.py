@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 from irradia.scene.merge import LEVEL_BITS
 
 _NORMALS_AGREE = np.cos(np.radians(2.0))  # a crease of more is meant to be seen
 _PARALLEL = 0.98  # |cosine| of two borders that run along each other
-_FOLD = 0.5  # cosine of the faces' inward directions; above, one lies upon the other
+_FOLD = np.cos(np.radians(50.0))  # a surface that turns more sees another half of the scene, smooth or not
 _SAME_PLACE_PX = 0.01
 _MOST_MATCHES = 8  # a point of a border on which more charts meet keeps the first
 
@@ -82,7 +82,7 @@ def _share_if_matches(borders, a, share, b, p):
         return -1.0
 
     # -- The surface goes on: normals agree, faces lie on different sides
-    dot, na, nb, side = 0.0, 0.0, 0.0, 0.0
+    dot, na, nb, side, fold = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(3):
         u = normals[a, 0, k] + share * (normals[a, 1, k] - normals[a, 0, k])
         v = normals[b, 0, k] + t * (normals[b, 1, k] - normals[b, 0, k])
@@ -90,7 +90,8 @@ def _share_if_matches(borders, a, share, b, p):
         na += u * u
         nb += v * v
         side += borders.inward[a, k] * borders.inward[b, k]
-    if side > _FOLD or dot < _NORMALS_AGREE * np.sqrt(na * nb):
+        fold += borders.front[a, k] * borders.front[b, k]
+    if side > 0.0 or fold < _FOLD or dot < _NORMALS_AGREE * np.sqrt(na * nb):
         return -1.0
 
     # -- Cut on the page
@@ -129,7 +130,7 @@ def _matches_of(borders, edge, share, grid, i, found, at):
     return n
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True)
 def match_borders(borders, edge, share, cell):
     """Finds for every point all other borders that are the same edge in space there.
 
@@ -152,7 +153,7 @@ def match_borders(borders, edge, share, cell):
     found = np.empty((n, _MOST_MATCHES), np.int32)
     at = np.empty((n, _MOST_MATCHES), np.float32)
     count = np.zeros(n, np.int64)
-    for i in prange(n):
+    for i in range(n):
         count[i] = _matches_of(borders, edge, share, grid, i, found[i], at[i])
     total = count.sum()
     point, other, other_share = np.empty(total, np.int64), np.empty(total, np.int64), np.empty(total)
@@ -177,7 +178,7 @@ def _footprint(x, y, first, width, height, pixel, weight, sign):
         weight[k] = sign * (fx if dx else 1.0 - fx) * (fy if dy else 1.0 - fy)
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True)
 def footprints(page, position_px, width, height):
     """What filtering reads on both sides of each point.
 
@@ -192,7 +193,7 @@ def footprints(page, position_px, width, height):
     """
     n = len(page)
     pixel, weight = np.empty((n, 8), np.uint32), np.empty((n, 8), np.float32)
-    for m in prange(n):
+    for m in range(n):
         for side in range(2):
             first = np.int64(page[m, side]) * width * height
             x, y = position_px[m, side, 0], position_px[m, side, 1]
@@ -201,11 +202,11 @@ def footprints(page, position_px, width, height):
     return pixel, weight
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True)
 def side_trust(pixel, weight, chart, texel_at, texel_chart, valid):
     """(M,) the smaller of the two sides' shares that come from valid texels of the point's own chart."""
     trust = np.empty(len(pixel), np.float32)
-    for m in prange(len(pixel)):
+    for m in range(len(pixel)):
         share = np.zeros(2, np.float32)
         for k in range(8):
             t = texel_at[pixel[m, k]]
@@ -280,7 +281,7 @@ def choose_unknowns(pixel, weight, chart, texel_at, texel_chart, region, valid, 
     return unknown, pixels[:n].copy(), regions[:n].copy()
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True)
 def smoothness(unknown, pixels, regions, texel_at, region, valid, width, height):
     """Neighbours of each unknown on its region.
 
@@ -290,7 +291,7 @@ def smoothness(unknown, pixels, regions, texel_at, region, valid, width, height)
     """
     neighbour = np.full((len(pixels), 4), -1, np.int32)
     degree = np.zeros(len(pixels), np.float32)
-    for i in prange(len(pixels)):
+    for i in range(len(pixels)):
         for direction in range(4):
             p = _neighbour(pixels[i], direction, width, height)
             if p < 0:
@@ -302,14 +303,3 @@ def smoothness(unknown, pixels, regions, texel_at, region, valid, width, height)
             elif j < 0 and t >= 0 and valid[t] and np.int64(region[t]) == regions[i]:
                 degree[i] += 1
     return neighbour, degree
-
-
-@njit(cache=True, parallel=True)
-def csr_times(starts, columns, entries, v, out):
-    """Sets ``out`` to A v for a sparse matrix by rows and v (n, C)."""
-    for i in prange(len(starts) - 1):
-        for c in range(v.shape[1]):
-            out[i, c] = 0.0
-        for k in range(starts[i], starts[i + 1]):
-            for c in range(v.shape[1]):
-                out[i, c] += entries[k] * v[columns[k], c]

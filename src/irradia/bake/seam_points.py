@@ -50,6 +50,7 @@ class Borders(NamedTuple):
         ends: (E, 2, 3) world positions.
         normals: (E, 2, 3) interpolated normals there.
         inward: (E, 3) unit, in the triangle's plane, across the edge and into the chart.
+        front: (E, 3) geometric normal of the triangle, unit.
         ends_px: (E, 2, 2) positions on the page, in texels.
         page, chart: (E,).
         lod: (E,) level of detail, as :attr:`MergedMesh.lod`; 0 without.
@@ -60,6 +61,7 @@ class Borders(NamedTuple):
     ends: F64
     normals: F64
     inward: F64
+    front: F64
     ends_px: F64
     page: NDArray[np.int32]
     chart: U32
@@ -73,8 +75,9 @@ def find_seam_points(mesh: MergedMesh, layout: LightmapLayout) -> SeamPoints:
     """Matches chart borders in space.
 
     Two borders match where they run along each other and the surface goes on from one to the other:
-    interpolated normals agree and the faces don't lie on the same side. Hard creases are no seams, and
-    neither are cuts whose two sides are one place on the page. Each pair is found from both sides.
+    interpolated normals agree, and the faces neither are folded sharply nor lie on the same side. Hard
+    creases are no seams, nor are cuts whose two sides are one place on the page. Each pair is found from
+    both sides.
 
     Args:
         mesh: The merged mesh.
@@ -117,11 +120,13 @@ def chart_borders(mesh: MergedMesh, layout: LightmapLayout) -> Borders:
     ends = mesh.positions[vertices].astype(np.float64)
     ends_px = mesh.lightmap_uv[vertices].astype(np.float64) * (layout.width_px, layout.height_px)
     length_m, length_px = (np.linalg.norm(e[:, 1] - e[:, 0], axis=1) for e in (ends, ends_px))
+    inward = _inward(ends, opposite)
     rounding = _TOLERANCE_OF_SCENE * np.abs(mesh.positions).max(initial=0.0)
     borders = Borders(
         ends=ends,
         normals=mesh.normals[vertices].astype(np.float64),
-        inward=_inward(ends, opposite),
+        inward=inward,
+        front=np.cross(ends[:, 1] - ends[:, 0], inward) / np.maximum(length_m, 1e-30)[:, None],
         ends_px=ends_px,
         page=mesh.page[drawn][row],
         chart=mesh.chart[drawn][row],
@@ -130,7 +135,7 @@ def chart_borders(mesh: MergedMesh, layout: LightmapLayout) -> Borders:
         length_px=length_px,
         tolerance=np.maximum(_TOLERANCE_TEXELS * length_m / np.maximum(length_px, _SHORTEST_PX), rounding),
     )
-    keep = (length_px > _SHORTEST_PX) & (length_m > 0) & borders.inward.any(axis=1)
+    keep = (length_px > _SHORTEST_PX) & (length_m > 0) & inward.any(axis=1)
     return Borders(*(column[keep] for column in borders))
 
 

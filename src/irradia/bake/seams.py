@@ -26,11 +26,11 @@ from irradia.scene.types import F32, U32
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
-_SMOOTH, _STAY = 0.001, 0.00006  # α and β; their ratio spreads a change over four to five texels
+_SMOOTH, _STAY = 0.002, 0.0001  # α and β; their ratio spreads a change over four to five texels
 _RINGS = 4  # texels from the seam beyond which nothing changes
 _TRUSTED_SHARE = 0.2  # of each side that must come from valid texels of its chart
 _DARK = 0.01  # of the median magnitude: what counts as black
-_ALIKE, _APART = 0.5, 0.8  # |a − b| / (a + b): up to here one surface, from here on a wall between
+_ALIKE, _APART = 1 / 3, 0.6  # |a − b| / (a + b): up to here one surface, from here on a wall between
 _TOLERANCE, _MOST_STEPS = 1e-3, 300
 
 
@@ -70,7 +70,7 @@ def seam_system(
         points: From :func:`find_seam_points`.
         texels: The covered texels.
         pages: (P, H, W, C) irradiance, linear, uncovered texels beside charts filled. Where its two
-            sides differ by a factor of three, a point begins to count less, from nine on not at all:
+            sides differ by a factor of two, a point begins to count less, from four on not at all:
             something stands on the seam, and light must not pass under it.
         valid: (N,) texels whose light counts; the others are left as they are.
         region: (N,) finer than charts: a change spreads within one only.
@@ -168,10 +168,8 @@ def _conjugate_gradient(matrix: csr_array, right: F32) -> F32:
 
     Sums run in NumPy's fixed order, not BLAS's, so that the bits don't depend on the number of threads.
     """
-    from irradia.bake.seam_kernels import csr_times
-
     to_unit = (1.0 / matrix.diagonal())[:, None].astype(np.float32)
-    change, image = np.zeros_like(right), np.empty_like(right)
+    change = np.zeros_like(right)
     residual = right.copy()
     direction = to_unit * residual
     energy = _dot(residual, direction)
@@ -179,7 +177,7 @@ def _conjugate_gradient(matrix: csr_array, right: F32) -> F32:
     for _ in range(_MOST_STEPS):
         if (energy <= enough).all():
             break
-        csr_times(matrix.indptr, matrix.indices, matrix.data, direction, image)
+        image = matrix @ direction
         step = energy / np.maximum(_dot(direction, image), 1e-30)
         change += (step * direction).astype(np.float32)
         residual -= (step * image).astype(np.float32)
