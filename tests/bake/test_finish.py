@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-from irradia.bake.finish import finish
+from irradia.bake.finish import Finisher, FinishOptions, finish
 from irradia.bake.rasterise import rasterise
 from irradia.core.progress import Progress, silent_progress
 
@@ -64,3 +64,67 @@ def test_the_same_input_gives_the_same_bytes(texels, noisy):
         return finish(texels, noisy, all_valid(texels), denoise=True, progress=silent_progress()).tobytes()
 
     assert once() == once()
+
+
+def finisher_of(texels, valid, region=None, **options) -> Finisher:
+    return Finisher(texels, valid, FinishOptions(**options), silent_progress(), region=region)
+
+
+def two_rooms(texels) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A hidden strip of two texels divides the chart: dark left of it, bright right; valid, region, light."""
+    x = texels.pixel % SIZE
+    valid = (x < 24) | (x >= 26)
+    region = np.where(x < 24, 0, np.where(x >= 26, 1, 0xFFFFFFFF)).astype(np.uint32)
+    light = np.where(x < 24, 0.0, 1.0)[:, None] * np.ones(3)
+    return valid, region, light.astype(np.float32)
+
+
+def test_light_does_not_pass_a_hidden_strip(texels, noisy):
+    valid, region, light = two_rooms(texels)
+    pages = finisher_of(texels, valid, region).irradiance(light * noisy)
+    dark = texels.pixel[region == 0]
+    assert not pages.reshape(-1, 3)[dark].any()
+
+
+def test_without_regions_light_does_pass(texels, noisy):
+    """The law above isn't true of itself."""
+    valid, region, light = two_rooms(texels)
+    pages = finisher_of(texels, valid).irradiance(light * noisy)
+    assert pages.reshape(-1, 3)[texels.pixel[region == 0]].any()
+
+
+def test_a_hidden_strip_takes_half_from_either_side(texels):
+    valid, region, light = two_rooms(texels)
+    pages = finisher_of(texels, valid, region, denoise=False).irradiance(light)
+    assert not pages[0, 10:40, 24].any()
+    assert pages[0, 10:40, 25].min() == 1.0
+
+
+def test_companion_maps_may_have_any_channels_and_signs(texels):
+    values = np.random.default_rng(6).normal(0.0, 1.0, (len(texels.pixel), 5)).astype(np.float32)
+    finisher = finisher_of(texels, all_valid(texels), denoise=False)
+    plain = finisher.irradiance(np.ones((len(values), 3), np.float32))
+    pages = finisher.companion(values, plain)
+    assert pages.shape == (1, SIZE, SIZE, 5)
+    assert np.array_equal(pages.reshape(-1, 5)[texels.pixel], values)
+    assert pages.min() < 0.0
+
+
+def test_a_companion_is_denoised_by_what_it_is_given(texels, noisy):
+    finisher = finisher_of(texels, all_valid(texels))
+    plain = finisher.irradiance(noisy)
+    seen = []
+
+    def halve(values, own_texels):
+        seen.append(len(own_texels.pixel))
+        return values / 2
+
+    pages = finisher.companion(noisy, plain, denoiser=halve)
+    assert seen == [len(texels.pixel)]
+    assert np.array_equal(pages.reshape(-1, 3)[texels.pixel], noisy / 2)
+
+
+def test_without_dilation_texels_far_from_charts_stay_empty(texels, noisy):
+    pages = finisher_of(texels, all_valid(texels), denoise=False, dilate=False).irradiance(noisy)
+    assert not pages[0, 52:, 52:].any()
+    assert pages[0, 20, 5].any()
