@@ -166,7 +166,7 @@ def test_lights_that_are_off_or_black_leave_nothing_to_sample():
     assert not world_of(scene_of([], dark)).lights.any
 
 
-def test_small_scenes_go_without_a_tree():
+def test_few_or_faint_sources_go_without_a_tree():
     from irradia.transport.light_choice import FixedChoice, TreeChoice
     from irradia.transport.light_setup import make_lights
 
@@ -174,6 +174,9 @@ def test_small_scenes_go_without_a_tree():
         scene = scene_of([], lights)
         return make_lights(scene, merge(scene))._local
 
+    sun = Light("directional", (1e5, 1e5, 1e5), direction=(0.0, -1.0, 0.0))
+    assert isinstance(choice((*lamps(), sun)), FixedChoice)  # in its light theirs is nothing
+    assert isinstance(choice((*lamps(), replace(sun, intensity=(1.0, 1.0, 1.0)))), TreeChoice)
     assert choice(()) is None
     assert isinstance(choice(lamps()[:2]), FixedChoice)
     assert isinstance(choice(lamps()), TreeChoice)

@@ -64,7 +64,7 @@ class Lights:
         local: How to choose among points, spots and emissive triangles, or None without any.
         area: The emissive triangles, or None.
         environment: Light from all round, or None.
-        n_local_kinds: Share of the samples that local sources get, against 1 for each other kind.
+        local_weight: How often local sources are asked, against 1 for each other kind.
 
     Attributes:
         any: Whether next-event estimation has anything to sample.
@@ -78,18 +78,18 @@ class Lights:
         local: LightChoice | None = None,
         area: EmissiveTriangles | None = None,
         environment: EnvironmentLight | None = None,
-        n_local_kinds: int = 1,
+        local_weight: float = 1.0,
     ) -> None:
         self.punctual, self.area, self.environment = punctual, area, environment
         self._distant, self._local = _DistantChoice(distant) if distant else None, local
         shares = (
             1.0 if distant else 0.0,
-            float(n_local_kinds) if local else 0.0,
+            local_weight if local else 0.0,
             1.0 if environment and environment.sampled else 0.0,
         )
         total = sum(shares)
         self.any = total > 0.0
-        self.p_distant, self.p_local, self.p_environment = (share / max(total, 1.0) for share in shares)
+        self.p_distant, self.p_local, self.p_environment = (share / (total or 1.0) for share in shares)
 
     def environment_radiance(self, direction: mi.Vector3f, active: mi.Bool) -> tuple[mi.Color3f, mi.Float]:
         """What a ray that leaves the scene sees, and next-event estimation's density there."""
