@@ -11,6 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
 from irradia.transport.alias import AliasTable
 from irradia.transport.backend import dr, mi
 from irradia.transport.emissive import EmissiveTriangles
@@ -219,8 +221,6 @@ class _DistantChoice:
     """Picks a directional light by strength; one alone costs nothing."""
 
     def __init__(self, distant: DistantLights) -> None:
-        import numpy as np
-
         self._only = distant.indices[0]
         self._alias = None
         if len(distant.indices) > 1:
