@@ -53,6 +53,7 @@ def write_products(
             compatible=job.compatible,
             directional=result.directional,
             shadows=None if result.shadows is None else BakedShadows(result.shadows, result.shadow_channels),
+            probes=baked.probes,
         )
     record = bake_record(baked, lightmap, progress, origin.to_dict())
     if baked.view is not None:
@@ -110,7 +111,9 @@ def bake_record(
         "launches_per_pass": stats["launches_per_pass"],
         "lightmap": map_record(lightmap, baked.layout, int(np.count_nonzero(~baked.result.valid))),
         "shadow_mask": _shadow_channels(baked),
-        "probes": None if baked.probes is None else len(baked.probes.positions),
+        "probes": None
+        if baked.probes is None
+        else {"count": len(baked.probes), "light": baked.probes.light, **baked.probes.provenance},
         "update": None
         if baked.update is None
         else {

@@ -24,9 +24,11 @@ from irradia.export.meshes import MeshVersions, freed_accessors, freed_materials
 from irradia.export.moz_lightmap import MozLightmaps
 from irradia.export.occlusion_materials import OcclusionMaterials
 from irradia.export.primitives import DRACO, MOZ_LIGHTMAP, PrimitiveWriter
+from irradia.export.probes_extension import add_probes
 from irradia.export.shadow_mask_extension import BakedShadows, add_shadow_mask, live_nodes
 from irradia.export.slots import Slots
 from irradia.formats.ktx2 import Encoding
+from irradia.formats.probes import ProbeSet
 from irradia.scene.gltf.accessors import Accessors
 from irradia.scene.gltf.document import GltfDocument, Json
 from irradia.scene.layout import LightmapLayout
@@ -47,6 +49,7 @@ def write_baked_glb(
     encoding: Encoding = "rgb9e5",
     directional: DirectionalMaps | None = None,
     shadows: BakedShadows | None = None,
+    probes: ProbeSet | None = None,
 ) -> None:
     """Writes the scene's document with its lightmap, whole or not at all.
 
@@ -65,6 +68,7 @@ def write_baked_glb(
         encoding: Of the HDR map.
         directional: Maps that say where the light comes from.
         shadows: What arrives of the lights that shine live.
+        probes: Light where nothing is baked.
     """
     data = baked_glb(
         scene,
@@ -74,6 +78,7 @@ def write_baked_glb(
         encoding=encoding,
         directional=directional,
         shadows=shadows,
+        probes=probes,
     )
     with write_atomic(path) as stream:
         stream.write(data)
@@ -88,12 +93,13 @@ def baked_glb(
     encoding: Encoding = "rgb9e5",
     directional: DirectionalMaps | None = None,
     shadows: BakedShadows | None = None,
+    probes: ProbeSet | None = None,
 ) -> bytes:
     """The bytes of :func:`write_baked_glb`."""
     if scene.document is None:
         raise InternalError("the scene to export has no document")
     export = _Export(scene, scene.document, layout, pages, compatible)
-    binary = export.run(encoding, directional, shadows)
+    binary = export.run(encoding, directional, shadows, probes)
     return _container(export.json, binary)
 
 
@@ -154,7 +160,11 @@ class _Export:
         )
 
     def run(
-        self, encoding: Encoding, directional: DirectionalMaps | None, shadows: BakedShadows | None
+        self,
+        encoding: Encoding,
+        directional: DirectionalMaps | None,
+        shadows: BakedShadows | None,
+        probes: ProbeSet | None,
     ) -> bytes:
         """Changes the JSON and returns the binary chunk."""
         self._bind_nodes()
@@ -167,6 +177,8 @@ class _Export:
             if directional is not None:
                 add_directional(self.json, self._slots, directional, encoding)
             add_shadow_mask(self.json, self._slots, self._scene.lights, shadows)
+            if probes is not None:
+                add_probes(self.json, self._slots, probes)
             used.add(lighting_extension.NAME)
         return self._finish(used)
 

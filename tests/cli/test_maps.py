@@ -1,0 +1,91 @@
+"""What a bake writes beside its plain map: directions, shadows, probes, other formats."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from irradia.cli.bake_job import PRODUCTS
+from irradia.export.map_files import FORMATS, read_map
+from irradia.formats.lightmap import read_lightmap
+from irradia.scene.gltf.read import read_document
+
+from .workshop import bake, node, write_workshop
+
+_PARTS = ("", "_sh_l0", "_sh_x", "_sh_y", "_sh_z")
+_PROBES = ("probes.npz", "probes.bin", "probes.three.json")
+
+
+def _mix_left_lamp(document):
+    node(document, "left lamp")["extras"] = {"irradia": {"mode": "mixed"}}
+
+
+@pytest.fixture(scope="module")
+def everything(tmp_path_factory):
+    """One bake with all maps: its folder and record."""
+    folder = tmp_path_factory.mktemp("maps")
+    scene = write_workshop(folder / "scene.gltf", _mix_left_lamp)
+    options = ["--samples", "8", "--directional", "sh", "--format", "all", "--no-denoise"]
+    record = bake(scene, folder / "out", *options, "--probes", "grid:1.5", "--probe-samples", "32")
+    return folder / "out", record
+
+
+def test_every_map_is_there_in_every_format(everything):
+    out, _ = everything
+    maps = {f"lightmap{part}{chosen.ending}" for part in _PARTS for chosen in FORMATS.values()}
+    rest = {"bake.json", "preview.png", "scene.baked.glb", "shadow_mask.png", *_PROBES}
+    assert {path.name for path in out.iterdir()} == maps | rest
+
+
+def test_every_file_is_one_that_a_later_bake_replaces(everything):
+    from fnmatch import fnmatch
+
+    out, _ = everything
+    assert all(any(fnmatch(path.name, pattern) for pattern in PRODUCTS) for path in out.iterdir())
+
+
+def test_formats_agree_on_the_light(everything):
+    out, _ = everything
+    expected = read_lightmap(out / "lightmap.exr")
+    lit = expected.covered[0]
+    for chosen in FORMATS.values():
+        found = read_map(out / f"lightmap{chosen.ending}")
+        assert found[lit].mean() == pytest.approx(expected.pages[0][lit].mean(), rel=0.02), chosen.name
+
+
+def test_a_mixed_light_has_its_shadow_in_the_mask_and_stays_on_its_node(everything):
+    out, record = everything
+    assert record["shadow_mask"] == {"left lamp": 0}
+    with Image.open(out / "shadow_mask.png") as image:
+        seen = np.asarray(image)[..., 0]
+    covered = read_lightmap(out / "lightmap.exr").covered[0]
+    assert (seen[covered] == 255).mean() > 0.5
+    assert (seen[covered] == 0).mean() > 0.01
+    document = read_document(out / "scene.baked.glb").json
+    assert "KHR_lights_punctual" in node(document, "left lamp")["extensions"]
+    assert "bakedLight" in node(document, "right lamp")["extensions"]["IRRADIA_lighting"]
+
+
+def test_the_baked_scene_holds_what_the_files_hold(everything):
+    out, _ = everything
+    lighting = read_document(out / "scene.baked.glb").json["extensions"]["IRRADIA_lighting"]
+    assert {"lightmap", "directional", "shadowMask", "probes"} <= set(lighting)
+
+
+def test_the_record_counts_probes(everything):
+    out, record = everything
+    with np.load(out / "probes.npz") as probes:
+        assert record["probes"]["count"] == len(probes["positions"])
+
+
+def test_an_override_changes_what_the_light_is_reflected_by(tmp_path):
+    scene = write_workshop(tmp_path / "scene.gltf")
+    options = ["--mode", "indirect", "--samples", "16", "--no-denoise"]
+    means = []
+    for name, more in (("plain", []), ("black", ["--material-override", "*:albedo=0,0,0"])):
+        bake(scene, tmp_path / name, *options, *more)
+        lightmap = read_lightmap(tmp_path / name / "lightmap.exr")
+        means.append(lightmap.pages[lightmap.covered].mean())
+    assert means[0] > 0.01
+    assert means[1] < 1e-6
