@@ -7,7 +7,7 @@ import pytest
 
 from irradia.bake.probes.dilate import fill_invalid
 from irradia.formats.probes import EMPTY, FILLED, VALID
-from irradia.scene.builtin.shapes import box
+from irradia.scene.builtin.shapes import box, quad
 from irradia.scene.merge import merge
 
 from .places import scene_of
@@ -42,6 +42,15 @@ def test_light_does_not_cross_a_second_wall():
     pairs = np.array([(0, 1), (1, 2)])
     filled, _ = fill_invalid(world, places, values, np.array([True, False, True]), pairs)
     np.testing.assert_allclose(filled[1], 2.0)
+
+
+def test_light_does_not_come_out_of_the_back_of_a_wall():
+    """The giver is behind a single-sided wall, the taker before it: whatever is behind is no light of its."""
+    world = world_of(scene_of(quad((0, -5, -5), (0, 10, 0), (0, 0, 10))))
+    places = np.array([(0.5, 0, 0), (-0.5, 0, 0)], np.float32)
+    values = np.array([0.0, 5.0], np.float32)[:, None]
+    _, state = fill_invalid(world, places, values, np.array([False, True]), np.array([(0, 1)]))
+    assert state.tolist() == [EMPTY, VALID]
 
 
 def test_deep_probes_are_reached_step_by_step_and_valid_ones_are_untouched():

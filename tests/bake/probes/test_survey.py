@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from irradia.bake.probes.octahedral import octahedral_directions
 from irradia.bake.probes.survey import DISTANCE_SIZE, Survey, survey
 from irradia.core import silent_progress
-from irradia.scene.builtin.shapes import box, floor
+from irradia.scene.builtin.shapes import box, floor, quad
 from irradia.scene.merge import merge
 from irradia.scene.types import Scene
 
@@ -54,6 +56,19 @@ def test_no_probe_moves_further_than_half_its_spacing():
     assert (moved > 0).any()
     outside = np.abs(positions + found.offsets).max(axis=1) > 1.0
     np.testing.assert_array_equal(found.valid, outside)
+
+
+def test_probe_stays_where_the_short_way_out_leads_into_the_next_solid():
+    found = look(scene_of(box((-1, -1, -1), (1, 1, 1)), box((0.4, -1, -1), (3, 1, 1))), [(0.9, 0, 0)])
+    assert not found.valid[0]
+    assert not found.offsets.any()
+
+
+def test_behind_a_leaf_is_not_in_a_wall():
+    leaf = scene_of(quad((-1, -1, 0), (2, 0, 0), (0, 2, 0)))
+    assert not look(leaf, [(0, 0, -0.1)], spacing_m=0.01).valid[0]
+    both_sides = replace(leaf, materials=(replace(leaf.materials[0], double_sided=True),))
+    assert look(both_sides, [(0, 0, -0.1)], spacing_m=0.01).valid[0]
 
 
 def test_half_of_the_sky_is_seen_above_a_plane():
