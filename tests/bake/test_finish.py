@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-from irradia.bake.finish import Finisher, FinishOptions, finish
+from irradia.bake.finish import Finisher, FinishOptions
 from irradia.bake.rasterise import rasterise
 from irradia.core.progress import Progress, silent_progress
 
@@ -24,6 +24,11 @@ def texels(page_mesh):
 @pytest.fixture
 def noisy(texels) -> np.ndarray:
     return np.random.default_rng(4).gamma(2.0, 0.5, (len(texels.pixel), 3)).astype(np.float32)
+
+
+def finish(texels, values, valid, *, denoise: bool, progress: Progress) -> np.ndarray:
+    """The pages of a bake's only map."""
+    return Finisher(texels, valid, FinishOptions(denoise=denoise), progress).irradiance(values)
 
 
 def all_valid(texels) -> np.ndarray:

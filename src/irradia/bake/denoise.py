@@ -112,7 +112,7 @@ def _canvas(values: F32, chart: _Chart) -> tuple[F32, NDArray[np.bool_]]:
     inside = np.zeros(chart.shape, np.bool_)
     canvas[chart.y, chart.x] = values
     inside[chart.y, chart.x] = True
-    nearest = distance_transform_edt(~inside, return_distances=False, return_indices=True)
+    nearest = np.asarray(distance_transform_edt(~inside, return_distances=False, return_indices=True))
     y, x = np.nonzero(~inside)
     near_y, near_x = nearest[0][y, x], nearest[1][y, x]
     mirror_y = np.clip(2 * near_y - y, 0, chart.shape[0] - 1)

@@ -170,20 +170,3 @@ class Finisher:
                 add_rings(pages, state, GUTTER_PX - 1)
                 fill_rest(pages, state)
         return pages
-
-
-def finish(
-    texels: TexelSet,
-    irradiance_over_pi: F32,
-    valid: NDArray[np.bool_],
-    *,
-    denoise: bool,
-    progress: Progress,
-    region: U32 | None = None,
-    seams: SeamPoints | None = None,
-) -> F32:
-    """Makes lightmap pages of a bake's only map: see :class:`Finisher`."""
-    options = FinishOptions(denoise=denoise, seams=seams is not None)
-    return Finisher(texels, valid, options, progress, region=region, seams=seams).irradiance(
-        irradiance_over_pi
-    )

@@ -83,7 +83,7 @@ def find_seam_points(mesh: MergedMesh, layout: LightmapLayout) -> SeamPoints:
         mesh: The merged mesh.
         layout: For the size of the pages.
     """
-    from irradia.bake.seam_kernels import match_borders
+    from irradia.bake.seam_search import match_borders
 
     borders = chart_borders(mesh, layout)
     if len(borders.page) == 0:
@@ -136,7 +136,7 @@ def chart_borders(mesh: MergedMesh, layout: LightmapLayout) -> Borders:
         tolerance=np.maximum(_TOLERANCE_TEXELS * length_m / np.maximum(length_px, _SHORTEST_PX), rounding),
     )
     keep = (length_px > _SHORTEST_PX) & (length_m > 0) & inward.any(axis=1)
-    return Borders(*(column[keep] for column in borders))
+    return borders._replace(**{name: column[keep] for name, column in borders._asdict().items()})
 
 
 def _weld(mesh: MergedMesh, layout: LightmapLayout) -> NDArray[np.int64]:

@@ -89,9 +89,10 @@ def seam_system(
     trust = kernels.side_trust(pixel, weight, points.chart, texel_at, texels.chart, valid)
     magnitude = _magnitude(pages, texels)
     alike, light = _compare_sides(magnitude[pixel], weight)
-    row_weight = np.sqrt(points.weight) * alike / (light if relative else 1.0)
+    row_weight = np.sqrt(points.weight) * alike / (light if relative else np.float32(1.0))
     kept = (trust >= _TRUSTED_SHARE) & (alike > 0)
-    pixel, weight, chart = pixel[kept], weight[kept] * row_weight[kept, None], points.chart[kept]
+    pixel, chart = pixel[kept], points.chart[kept]
+    weight = (weight[kept] * row_weight[kept, None]).astype(np.float32)
 
     # -- Which texels may change, and what that does
     unknown, pixels, regions = kernels.choose_unknowns(
@@ -157,7 +158,7 @@ def _normal_matrix(jump: csr_array, neighbour: NDArray[np.int32], degree: F32) -
     row, direction = np.nonzero(neighbour >= 0)
     couplings = csr_array(
         (np.full(len(row), -_SMOOTH, np.float32), (row, neighbour[row, direction])),
-        shape=(jump.shape[1],) * 2,
+        shape=(len(degree), len(degree)),
     )
     diagonal = diags_array(np.float32(_SMOOTH) * degree + np.float32(_STAY))
     return (jump.T @ jump + couplings + diagonal).tocsr()
@@ -168,7 +169,7 @@ def _conjugate_gradient(matrix: csr_array, right: F32) -> F32:
 
     Sums run in NumPy's fixed order, not BLAS's, so that the bits don't depend on the number of threads.
     """
-    to_unit = (1.0 / matrix.diagonal())[:, None].astype(np.float32)
+    to_unit = np.float32(1.0) / np.asarray(matrix.diagonal(), np.float32)[:, None]
     change = np.zeros_like(right)
     residual = right.copy()
     direction = to_unit * residual
