@@ -6,10 +6,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from irradia.cli.bake_job import PRODUCTS
+from irradia.bake.options import BakeOptions
+from irradia.cli.bake_job import PRODUCTS, BakeJob, run_bake
+from irradia.cli.bake_views import ViewOptions
+from irradia.core.progress import silent_progress
 from irradia.export.map_files import FORMATS, read_map
 from irradia.formats.lightmap import read_lightmap
 from irradia.scene.gltf.read import read_document
+from irradia.scene.lightmap_uv.options import LayoutOptions
 
 from .workshop import bake, node, write_workshop
 
@@ -77,6 +81,25 @@ def test_the_record_counts_probes(everything):
     out, record = everything
     with np.load(out / "probes.npz") as probes:
         assert record["probes"]["count"] == len(probes["positions"])
+
+
+def test_the_report_shows_maps_that_go_with_the_plain_one(everything, tmp_path):
+    job = BakeJob(
+        scene=str(everything[0].parent / "scene.gltf"),
+        out=tmp_path,
+        layout=LayoutOptions(resolution=32),
+        bake=BakeOptions(samples=96, adaptive=True, directional="mono-sh", denoise=False),
+        views=ViewOptions(reference_spp=2, n_pixels=32 * 32, full_spp=2, baked_spp=2),
+    )
+    run_bake(job, silent_progress())
+    html = (tmp_path / "report.html").read_text(encoding="utf-8")
+    for name in (
+        "Shadow mask: left lamp in red",
+        "Samples per texel, dark 64",
+        "Directional map sh_direction",
+    ):
+        assert f'alt="{name}' in html
+    assert "Noise, 95th percentile" in html
 
 
 def test_an_override_changes_what_the_light_is_reflected_by(tmp_path):

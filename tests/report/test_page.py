@@ -14,6 +14,7 @@ from irradia.report import (
     Comparison,
     Convergence,
     LightmapSummary,
+    MapPicture,
     Performance,
     ReportData,
     render_report,
@@ -171,3 +172,13 @@ def test_the_report_is_written_whole(data, tmp_path):
     write_report(tmp_path / "report.html", data)
     assert (tmp_path / "report.html").read_text(encoding="utf-8") == render_report(data)
     assert [p.name for p in tmp_path.iterdir()] == ["report.html"]
+
+
+def test_maps_beside_the_plain_one_are_shown_with_their_names(data):
+    pixels = np.zeros((16, 16, 3), np.uint8)
+    companions = (MapPicture("Shadow <mask>", pixels), MapPicture("Samples", pixels))
+    lightmap = dataclasses.replace(data.lightmap, companions=companions, facts=(("Probes", "81"),))
+    html = render_report(dataclasses.replace(data, lightmap=lightmap))
+    names = [attrs["alt"] for tag, attrs in collect(html).tags if tag == "img" and attrs.get("alt")]
+    assert {"Shadow <mask>", "Samples"} <= set(names)
+    assert "<dt>Probes</dt><dd>81</dd>" in html

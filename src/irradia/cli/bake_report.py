@@ -5,9 +5,15 @@ from __future__ import annotations
 import itertools
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from irradia.bake.lightmap import LightmapResult
 from irradia.cli.bake_job import Baked, BakeJob
 from irradia.cli.bake_views import View, ViewOptions
-from irradia.report import Comparison, Convergence, LightmapSummary, Performance, ReportData
+from irradia.core.colour import automatic_exposure_ev
+from irradia.report import Comparison, Convergence, LightmapSummary, MapPicture, Performance, ReportData
+from irradia.report.pictures import display, error_colours
 from irradia.scene.types import Scene
 
 
@@ -23,12 +29,70 @@ def report_data(job: BakeJob, baked: Baked, record: dict[str, Any]) -> ReportDat
             baked.result.coverage,
             baked.layout.texels_per_metre,
             record["lightmap"]["n_invalid_texels"],
+            companions=companion_pictures(baked.result),
+            facts=_lightmap_facts(record),
         ),
         performance=_performance(record),
         provenance=record["provenance"],
         convergence=convergence(record["stats"]["epochs"]),
-        notes=baked.scene.notes,
+        notes=(*baked.scene.notes, *baked.layout.notes),
     )
+
+
+def companion_pictures(result: LightmapResult) -> tuple[MapPicture, ...]:
+    """Samples per texel where they differ, shadow mask and directional maps, each as its first page."""
+    pictures = []
+    counts = result.sample_count[result.valid]
+    if len(counts) and counts.min() != counts.max():
+        share = result.texels.to_pages(result.sample_count / np.float32(counts.max()))[0]
+        name = f"Samples per texel, dark {counts.min()} to bright {counts.max()}"
+        pictures.append(MapPicture(name, error_colours(share)))
+    if result.shadows is not None:
+        names = _shadow_names(result)
+        pictures.append(MapPicture(f"Shadow mask: {names}", _codes(result.shadows[0, ..., :3])))
+    if result.directional is not None:
+        from irradia.bake.directional_modes import MODES
+
+        for name, pages in result.directional.pages.items():
+            is_light = name in MODES[result.directional.mode].light_maps
+            lit = pages[result.coverage > 0.0]
+            pixels = display(pages[0], automatic_exposure_ev(lit)) if is_light else _codes(pages[0])
+            pictures.append(MapPicture(f"Directional map {name}", pixels))
+    return tuple(pictures)
+
+
+def _codes(values: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """Numbers of [0, 1] as they are, not as light."""
+    return np.round(np.clip(values, 0.0, 1.0) * 255.0).astype(np.uint8)
+
+
+def _shadow_names(result: LightmapResult) -> str:
+    """Which light is in which colour of the picture; the fourth channel has none."""
+    named: dict[int, list[str]] = {}
+    for light, channel in zip(result.lights, result.shadow_channels, strict=True):
+        if channel is not None:
+            named.setdefault(channel, []).append(light.name or light.kind)
+    colours = ("red", "green", "blue", "no colour")
+    return "; ".join(f"{', '.join(names)} in {colours[channel]}" for channel, names in sorted(named.items()))
+
+
+def _lightmap_facts(record: dict[str, Any]) -> tuple[tuple[str, str], ...]:
+    """What there is to say of a bake that went beyond its plain map."""
+    stats, update, probes = record["stats"], record["update"], record["probes"]
+    facts = {
+        "Light": None if stats["mode"] == "full" else stats["mode"],
+        "Ended by": None if record["ended_by"] == "samples" else record["ended_by"],
+        "Noise, 95th percentile": _percent(stats["noise_p95"]),
+        "Cut off by the clamp": _percent(stats["clamped_off_share"]),
+        "Baked anew": None if update is None else _percent(update["rebaked_share"]),
+        "Stale": None if update is None else _percent(update["stale_share"]),
+        "Probes": None if probes is None else str(probes["count"]),
+    }
+    return tuple((label, value) for label, value in facts.items() if value is not None)
+
+
+def _percent(share: float | None) -> str | None:
+    return None if share is None else f"{share:.2%}"
 
 
 def convergence(epochs: list[dict[str, float]]) -> Convergence | None:

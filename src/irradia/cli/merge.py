@@ -28,10 +28,10 @@ def command(
     device: str,
     threads: int | None,
 ) -> None:
-    """Join the shards of one bake, in any order.
+    """Join the shards of one bake.
 
-    SHARDS are the files that ``irradia bake --shard I/N`` wrote. The results have the same bytes as
-    those of an undivided bake.
+    SHARDS are the files that ``irradia bake --shard I/N`` wrote, in any order. The results
+    have the same bytes as those of an undivided bake.
     """
     from dataclasses import replace
 

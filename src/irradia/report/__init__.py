@@ -4,6 +4,7 @@ from irradia.report.data import (
     Comparison,
     Convergence,
     LightmapSummary,
+    MapPicture,
     Performance,
     ReportData,
 )
@@ -13,6 +14,7 @@ __all__ = [
     "Comparison",
     "Convergence",
     "LightmapSummary",
+    "MapPicture",
     "Performance",
     "ReportData",
     "render_report",

@@ -36,6 +36,19 @@ class Comparison:
 
 
 @dataclass(frozen=True)
+class MapPicture:
+    """A map that goes with the lightmap.
+
+    Attributes:
+        name: What it shows, for people.
+        pixels: (H, W, 3) its first page, as 8-bit sRGB pixels.
+    """
+
+    name: str
+    pixels: NDArray[np.uint8]
+
+
+@dataclass(frozen=True)
 class LightmapSummary:
     """The finished pages.
 
@@ -44,12 +57,16 @@ class LightmapSummary:
         coverage: (P, H, W) share of each texel that charts cover.
         texels_per_metre: Median density.
         n_invalid: Texels that lie inside geometry.
+        companions: Maps beside the plain one.
+        facts: Label and value of what else was baked, in reading order.
     """
 
     pages: F32
     coverage: F32
     texels_per_metre: float
     n_invalid: int = 0
+    companions: tuple[MapPicture, ...] = ()
+    facts: tuple[tuple[str, str], ...] = ()
 
     @property
     def n_texels(self) -> int:

@@ -14,8 +14,16 @@ from typing import Any
 from irradia.core.colour import automatic_exposure_ev
 from irradia.core.files import write_text_atomic
 from irradia.report import charts, text
-from irradia.report.data import Comparison, LightmapSummary, Performance, ReportData
-from irradia.report.pictures import data_uri, display, error_colours, error_gradient_css, page_display
+from irradia.report.data import Comparison, LightmapSummary, MapPicture, Performance, ReportData
+from irradia.report.pictures import (
+    F32,
+    data_uri,
+    display,
+    error_colours,
+    error_gradient_css,
+    map_display,
+    page_display,
+)
 
 # Metric: label, and what a good value is.
 _SCORES = {
@@ -155,13 +163,23 @@ def _lightmap(lightmap: LightmapSummary) -> str:
         ("Density", f"{text.count(round(lightmap.texels_per_metre, 2))} texels per metre"),
         ("Texels inside geometry", text.count(lightmap.n_invalid)),
         ("Exposure of the pictures", text.stops(exposure_ev)),
+        *lightmap.facts,
     )
     figures = "".join(
         f'<figure class="page"><img src="{uri}" alt="Lightmap page {i}" loading="lazy">'
         f"<figcaption>Page {i}, {_covered(lightmap, i):.0%} covered</figcaption></figure>"
         for i, uri in enumerate(_page_uris(lightmap, exposure_ev))
     )
+    figures += "".join(_companion(companion, lightmap.coverage[0]) for companion in lightmap.companions)
     return f'{_pairs(facts)}<div class="pages">{figures}</div>'
+
+
+def _companion(companion: MapPicture, coverage: F32) -> str:
+    uri, name = data_uri(map_display(companion.pixels, coverage), lossless=False), escape(companion.name)
+    return (
+        f'<figure class="page"><img src="{uri}" alt="{name}" loading="lazy">'
+        f"<figcaption>{name}</figcaption></figure>"
+    )
 
 
 def _page_uris(lightmap: LightmapSummary, exposure_ev: float) -> list[str]:

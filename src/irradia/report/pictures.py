@@ -53,9 +53,21 @@ def error_gradient_css() -> str:
 
 def page_display(page: F32, coverage: F32, exposure_ev: float) -> U8:
     """A lightmap page as people look at it: scaled down, a checkerboard where no chart is."""
-    step = -(-max(page.shape[:2]) // MAX_PAGE_PX)
-    pixels = display(page[::step, ::step], exposure_ev)
-    covered = coverage[::step, ::step] > 0
+    step = _page_step(page)
+    return _on_board(display(page[::step, ::step], exposure_ev), coverage[::step, ::step] > 0)
+
+
+def map_display(pixels: U8, coverage: F32) -> U8:
+    """(H, W, 3) pixels of a map like :func:`page_display`."""
+    step = _page_step(pixels)
+    return _on_board(pixels[::step, ::step], coverage[::step, ::step] > 0)
+
+
+def _page_step(page: NDArray) -> int:
+    return -(-max(page.shape[:2]) // MAX_PAGE_PX)
+
+
+def _on_board(pixels: U8, covered: NDArray[np.bool_]) -> U8:
     rows, columns = np.indices(covered.shape)
     board = np.where((rows // 8 + columns // 8) % 2 == 0, *map(np.uint8, CHECKER_SRGB8))
     return np.where(covered[..., None], pixels, board[..., None]).astype(np.uint8)
