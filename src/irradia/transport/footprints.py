@@ -16,6 +16,9 @@ from irradia.transport.texel_grid import PRECEDING, TexelGrid
 from irradia.transport.world import World
 
 
+_ALL_BUT_BLACK = 0.01
+
+
 @dataclass(frozen=True)
 class Footprints:
     """What of each texel looks at the scene.
@@ -66,8 +69,15 @@ def clear_footprints(world: World, subsamples: Subsamples, grid: TexelGrid) -> F
 
 
 def light_of_darker_side(light: mi.Color3f, behind: mi.UInt32) -> mi.Color3f:
-    """What texels may pass on: of those that show on both sides of a wall, the darker side's light."""
-    return dr.minimum(light, dr.gather(mi.Color3f, light, behind))
+    """What texels may pass on: of those that show on both sides of a wall, the darker side's light.
+
+    Only where that side is all but black: then it is the inside of something closed. Elsewhere the two
+    sides are parts of one scene, and the darker one would cost more light than it keeps from leaking
+    (1 % of the whole in a furnished hall).
+    """
+    darker = dr.gather(mi.Color3f, light, behind)
+    closed = dr.max(darker) < _ALL_BUT_BLACK * dr.max(light)
+    return dr.select(closed, dr.minimum(light, darker), light)
 
 
 def _behind(
