@@ -135,7 +135,8 @@ def join(bake: ProgressiveBake, shards: Sequence[Shard], identity: dict[str, Any
     Raises:
         InputError: The shards are of another scene.
     """
-    differing = [k for k in identity if shards[0].identity.get(k) != identity[k]]
+    plain = json.loads(json.dumps(identity))  # as the files': tuples have become lists
+    differing = [k for k in plain if shards[0].identity.get(k) != plain[k]]
     if differing:
         raise InputError(f"the shards were traced with another: {', '.join(sorted(differing))}")
     from irradia.transport.texel_sums import TexelSums

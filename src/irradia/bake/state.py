@@ -110,7 +110,8 @@ def _damaged(path: Path) -> InputError:
 
 
 def _check_identity(path: Path, found: dict[str, Any], expected: dict[str, Any]) -> None:
-    differing = [key for key in expected if found.get(key) != expected[key]]
+    plain = json.loads(json.dumps(expected))  # as the file's: tuples have become lists
+    differing = [key for key in plain if found.get(key) != plain[key]]
     if differing:
         raise InputError(
             f"the interrupted bake differs in: {', '.join(sorted(differing))}",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import sys
 import traceback
@@ -13,6 +14,7 @@ import click
 from irradia import __version__
 from irradia.cli.output import INTERRUPTED, reserve_stdout, write_json
 from irradia.core.errors import InputError, IrradiaError
+from irradia.core.files import disk_problem
 
 _INTERRUPTED = "stopped; files already finished are whole, run again to go on"
 
@@ -81,11 +83,15 @@ def _run(arguments: Sequence[str], *, wants_json: bool) -> int:
         return _fail(wants_json, str(error), error.exit_code, getattr(error, "where", None))
     except MemoryError:
         return _fail(wants_json, "not enough memory; a smaller --resolution needs less", InputError.exit_code)
+    except OSError as error:
+        problem = disk_problem(error)
+        if problem is None:
+            return _our_fault(wants_json, error)
+        return _fail(wants_json, str(problem), problem.exit_code, problem.where)
     except Exception as error:  # noqa: BLE001 - the last line of defence: report it as our fault
         if _comes_from_ctrl_c(error):
             return _fail(wants_json, _INTERRUPTED, INTERRUPTED)
-        traceback.print_exc(file=sys.stderr)
-        return _fail(wants_json, f"a defect of Irradia, please report it: {error!r}", 1)
+        return _our_fault(wants_json, error)
     return code if isinstance(code, int) else 0
 
 
@@ -104,8 +110,14 @@ def _usage(error: click.ClickException) -> str:
     return f"{error.format_message()}\n  See: {path} --help"
 
 
+def _our_fault(wants_json: bool, error: Exception) -> int:
+    traceback.print_exc(file=sys.stderr)
+    return _fail(wants_json, f"a defect of Irradia, please report it: {error!r}", 1)
+
+
 def _fail(wants_json: bool, message: str, code: int, where: str | None = None) -> int:
     click.echo(f"irradia: {message}", err=True)
     if wants_json:
-        write_json({"ok": False, "error": {"message": message, "where": where, "exit_code": code}})
+        with contextlib.suppress(OSError):  # where stdout is what is full
+            write_json({"ok": False, "error": {"message": message, "where": where, "exit_code": code}})
     return code

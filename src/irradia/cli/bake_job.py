@@ -165,6 +165,7 @@ def run_bake(job: BakeJob, progress: Progress, shards: Sequence[Shard] = ()) -> 
     from irradia.cli.bake_checks import check_job
     from irradia.cli.bake_files import write_products
     from irradia.cli.bake_occlusion import run_occlusion
+    from irradia.cli.bake_trace import forget
     from irradia.transport import use_device
 
     check_job(job)
@@ -176,6 +177,8 @@ def run_bake(job: BakeJob, progress: Progress, shards: Sequence[Shard] = ()) -> 
         baked = _bake(job, progress, shards)
         record = write_products(folder, job, baked, progress, start)
         files = tuple(sorted(path.name for path in folder.iterdir()))
+    if baked.complete:
+        forget(job)
     return BakeSummary(record, files, baked.complete)
 
 
@@ -222,8 +225,7 @@ def run_shard(job: BakeJob, progress: Progress) -> Path:
     scene, _, bake = _prepare(job, progress)
     shard = trace_shard(bake, job, identity(job, scene, bake.texels), progress)
     path = job.out / f"shard-{shard.number}-of-{shard.count}.npz"
-    with staged_folder(job.out) as folder:
-        write_shard(folder / path.name, shard)
+    write_shard(path, shard)  # by itself, so that machines may share a folder
     return path
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from irradia.bake.lightmap import LightmapBake
@@ -40,14 +41,27 @@ def trace(bake: LightmapBake, job: BakeJob, identity: dict[str, Any], progress: 
     with asks_first(bake.bake.stop, progress.say):
         for _ in bake.passes(progress):
             if time.perf_counter() - saved >= job.checkpoint_s:
-                save_state(path, bake.bake, identity)
+                _save(path, bake, identity, progress)
                 saved = time.perf_counter()
+    if not bake.bake.stopped and bake.bake.progression.spent_s < job.checkpoint_s:
+        return True
+    _save(path, bake, identity, progress)  # what follows takes time too, and may be killed
     if bake.bake.stopped:
-        save_state(path, bake.bake, identity)
         progress.say("Stopped early; the results are usable. The same command with --resume goes on.")
-        return False
-    path.unlink(missing_ok=True)
-    return True
+    return not bake.bake.stopped
+
+
+def forget(job: BakeJob) -> None:
+    """Takes the state away once the results stand in their place."""
+    (job.out / STATE).unlink(missing_ok=True)
+
+
+def _save(path: Path, bake: LightmapBake, identity: dict[str, Any], progress: Progress) -> None:
+    """Saves the state; a disk without room for it need not end the bake."""
+    try:
+        save_state(path, bake.bake, identity)
+    except OSError as error:
+        progress.say(f"note: the state for --resume could not be saved: {error.strerror or error}")
 
 
 def trace_shard(bake: LightmapBake, job: BakeJob, identity: dict[str, Any], progress: Progress) -> Shard:

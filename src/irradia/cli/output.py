@@ -23,13 +23,12 @@ def reserve_stdout() -> Iterator[None]:
     The file descriptor is moved as well as ``sys.stdout``, since C++ libraries print past the latter.
     """
     sys.stdout.flush()
-    with os.fdopen(os.dup(1), "wb") as kept, redirect_stdout(sys.stderr):
+    with os.fdopen(os.dup(1), "wb", buffering=0) as kept, redirect_stdout(sys.stderr):
         os.dup2(2, 1)
         _reserved.append(kept)
         try:
             yield
         finally:
-            kept.flush()
             _reserved.pop()
             os.dup2(kept.fileno(), 1)
 
@@ -38,7 +37,9 @@ def write_json(value: Mapping[str, Any]) -> None:
     """Writes the command's one JSON object. NaN and infinity, which JSON lacks, become null."""
     text = json.dumps(_finite(value), indent=2, allow_nan=False, default=_plain) + "\n"
     if _reserved:
-        _reserved[-1].write(text.encode("utf-8"))
+        rest = memoryview(text.encode("utf-8"))
+        while rest:
+            rest = rest[_reserved[-1].write(rest) :]
     else:
         click.echo(text, nl=False)
 
