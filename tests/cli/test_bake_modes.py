@@ -114,6 +114,14 @@ def test_a_distance_goes_with_occlusion_alone(scene, tmp_path):
     assert app.run(["bake", str(scene), "-o", str(tmp_path / "out"), "--ao-distance", "1"]) == 2
 
 
+@pytest.mark.parametrize(("option", "name"), [("--view-first", "nowhere"), ("--only", "nothing")])
+def test_a_name_that_nothing_bears_is_said_before_the_unwrap(option, name, scene, tmp_path, capfd):
+    assert app.run(["bake", str(scene), "-o", str(tmp_path / "out"), option, name, "--json"]) == 2
+    shown = capfd.readouterr()
+    assert json.loads(shown.out)["error"]["where"] == option
+    assert "unwrap" not in shown.err
+
+
 def test_nothing_to_resume_is_said_before_anything_is_done(scene, tmp_path, capfd):
     assert app.run(["bake", str(scene), "-o", str(tmp_path / "out"), "--resume"]) == 2
     said = capfd.readouterr().err

@@ -130,6 +130,18 @@ def test_what_only_left_out_is_found_by_the_next_update(again):
     assert (now.extra["stale"] == 0).all()
 
 
+def test_an_object_that_only_left_out_counts_as_changed_until_it_is_baked(again, capfd):
+    def nudge(document):  # too little for the light to tell
+        node(document, "box")["translation"][0] += 1e-4
+
+    again(nudge, "--only", "wall")
+    capfd.readouterr()
+    again(nudge)
+    assert "Changed: box." in capfd.readouterr().err
+    again(nudge)
+    assert "Changed: nothing." in capfd.readouterr().err
+
+
 def test_directional_maps_keep_their_directions(tmp_path):
     scene = write_workshop(tmp_path / "scene.gltf")
     name = "lightmap_sh_x.exr"

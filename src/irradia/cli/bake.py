@@ -248,7 +248,7 @@ def describe(job: BakeJob, summary: BakeSummary) -> str:
     return "\n".join(
         [
             f"{record['scene']}: {lightmap['n_texels']:,} texels on {pages} of {size}, "
-            f"{stats['samples_per_texel']:.4g} samples each, "
+            f"{_count(stats['samples_per_texel'])} samples each, "
             f"baked in {record['bake_s']:.1f} s ({record['samples_per_second'] / 1e6:.2f} M samples/s)"
             + _ending(record),
             _accuracy(job, record),
@@ -263,6 +263,11 @@ def files_line(out: Path, files: Sequence[str]) -> str:
         return f"In {out}: {', '.join(files)}"
     others = [name for name in files if not name.startswith("lightmap")]
     return f"In {out}: {len(files) - len(others)} maps (lightmap…), {', '.join(others)}"
+
+
+def _count(number: float) -> str:
+    """Three digits, but whole thousands."""
+    return f"{number:,.0f}" if number >= 100.0 else f"{number:.3g}"
 
 
 def _ending(record: dict[str, Any]) -> str:

@@ -234,10 +234,11 @@ def _prepare(job: BakeJob, progress: Progress) -> tuple[Scene, LightmapLayout, L
     from irradia.scene.lightmap_uv import layout_lightmap
 
     scene = open_scene(job.scene, job.load, job.light, progress, overrides=job.overrides, ies=job.ies)
+    selection = _selection(job, scene)
     layout = layout_lightmap(scene, job.layout, progress)
     for note in layout.notes:
         progress.say(note)
-    return scene, layout, start_bake(scene, layout, job.bake, progress, _selection(job, scene))
+    return scene, layout, start_bake(scene, layout, job.bake, progress, selection)
 
 
 def _bake(job: BakeJob, progress: Progress, shards: Sequence[Shard]) -> Baked:
@@ -303,7 +304,7 @@ def _selection(job: BakeJob, scene: Scene) -> Selection:
     from irradia.scene.framing import camera_from_spec
     from irradia.scene.selection import select_instances
 
-    view = None if job.view_first is None else camera_from_spec(scene, job.view_first)
+    view = None if job.view_first is None else camera_from_spec(scene, job.view_first, where="--view-first")
     only = select_instances(scene, job.only) if job.only else None
     return Selection(view=view, instances=only, shard=job.shard)
 

@@ -23,7 +23,9 @@ INSIDE_YFOV_RAD = math.radians(62.0)
 DEFAULT_ASPECT = 16.0 / 9.0
 
 
-def camera_from_spec(scene: Scene, spec: str | None, aspect: float | None = None) -> Camera:
+def camera_from_spec(
+    scene: Scene, spec: str | None, aspect: float | None = None, *, where: str = "--camera"
+) -> Camera:
     """The camera that ``--camera`` asks for.
 
     Args:
@@ -31,6 +33,7 @@ def camera_from_spec(scene: Scene, spec: str | None, aspect: float | None = None
         spec: An index, a camera's name, a JSON file from :func:`save_camera`, ``auto`` for
             :func:`frame_scene`, or None: the scene's first camera if it has one, else ``auto``.
         aspect: Width over height; None keeps the camera's.
+        where: What an error names.
 
     Raises:
         InputError: No camera matches, or the file is not a camera.
@@ -42,7 +45,7 @@ def camera_from_spec(scene: Scene, spec: str | None, aspect: float | None = None
     elif Path(spec).suffix.lower() == ".json":
         camera = load_camera(spec)
     else:
-        camera = _scene_camera(scene, spec)
+        camera = _scene_camera(scene, spec, where)
     return replace(camera, aspect=aspect) if aspect else camera
 
 
@@ -116,7 +119,7 @@ def _no_camera(path: Path | str, reason: str) -> InputError:
     )
 
 
-def _scene_camera(scene: Scene, spec: str) -> Camera:
+def _scene_camera(scene: Scene, spec: str, where: str) -> Camera:
     names = [camera.name for camera in scene.cameras]
     if spec in names:
         return scene.cameras[names.index(spec)]
@@ -125,7 +128,7 @@ def _scene_camera(scene: Scene, spec: str) -> Camera:
     listed = ", ".join(f"{index} ({name})" if name else str(index) for index, name in enumerate(names))
     raise InputError(
         f"there is no camera {spec!r}; the scene has {listed or 'none'}",
-        where="--camera",
+        where=where,
         fix="Give an index, a name, a saved .json, or 'auto'.",
     )
 
