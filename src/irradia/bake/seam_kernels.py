@@ -124,7 +124,7 @@ def choose_unknowns(pixel, weight, chart, texel_at, texel_chart, region, valid, 
 
 @njit(cache=True)
 def smoothness(unknown, pixels, regions, texel_at, region, valid, width, height):
-    """Neighbours of each unknown on its region.
+    """Neighbours of each covered unknown on its region; uncovered ones have none.
 
     Returns:
         neighbour (n, 4) int32, −1 where there is none that changes; and how many there are in all (n,),
@@ -135,12 +135,10 @@ def smoothness(unknown, pixels, regions, texel_at, region, valid, width, height)
     for i in range(len(pixels)):
         for direction in range(4):
             p = _neighbour(pixels[i], direction, width, height)
-            if p < 0:
+            if p < 0 or texel_at[p] < 0 or texel_at[pixels[i]] < 0:
                 continue
             j, t = unknown[p], texel_at[p]
-            if j >= 0 and regions[j] == regions[i]:
+            if valid[t] and np.int64(region[t]) == regions[i]:
                 neighbour[i, direction] = j
-                degree[i] += 1
-            elif j < 0 and t >= 0 and valid[t] and np.int64(region[t]) == regions[i]:
                 degree[i] += 1
     return neighbour, degree

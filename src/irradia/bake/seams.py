@@ -27,13 +27,13 @@ from irradia.scene.types import F32, U32
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
-_SMOOTH, _STAY = 0.01, 0.0005  # α and β; their ratio spreads a change over four to five texels
-_STAY_UNCOVERED = 0.0005  # γ
+_SMOOTH, _STAY = 0.01, 0.001  # α and β; their ratio spreads a change over about three texels
+_STAY_UNCOVERED = 0.0003  # γ
 _RINGS = 4  # texels from the seam beyond which nothing changes
 _TRUSTED_SHARE = 0.2  # of each side that must come from valid texels of its chart
 _DARK = 0.01  # of the median magnitude: what counts as black
 _ALIKE, _APART = 1 / 3, 0.6  # |a − b| / (a + b): up to here one surface, from here on a wall between
-_TOLERANCE, _MOST_STEPS = 1e-3, 300
+_TOLERANCE, _MOST_STEPS = 1e-4, 300
 
 
 @dataclass(frozen=True)
