@@ -73,14 +73,14 @@ def write_memory(path: Path, memory: Memory) -> None:
         "fingerprint": memory.fingerprint,
         "settings": memory.settings,
     }
+    arrays = {
+        "header": np.frombuffer(json.dumps(header).encode(), np.uint8),
+        "pixel": memory.pixel,
+        "coarse": memory.coarse,
+        **{f"sums/{name}": array for name, array in memory.sums.items()},
+    }
     with write_atomic(path) as stream:
-        np.savez(
-            stream,
-            header=np.frombuffer(json.dumps(header).encode(), np.uint8),
-            pixel=memory.pixel,
-            coarse=memory.coarse,
-            **{f"sums/{name}": array for name, array in memory.sums.items()},
-        )
+        np.savez(stream, **arrays)  # type: ignore[arg-type]
 
 
 def read_memory(path: Path) -> Memory | None:
