@@ -8,8 +8,9 @@ x = x₀ + σ y, σ the light's magnitude around each texel, the change y minimi
 
 so dark places count as much as bright ones. A difference between whole charts is spread over a few
 texels instead of showing as a ramp of one; what differs from texel to texel is left to the uncovered
-texels beside charts, which nobody sees by themselves, so that covered ones keep their detail. Based on Iwanicki, "Lighting Technology of The Last of Us" (2013), which moves
-border texels alone and absolutely; the smooth, relative change is ours.
+texels beside charts, which nobody sees by themselves, so that covered ones keep their detail. Based on
+Iwanicki, "Lighting Technology of The Last of Us" (2013), which moves border texels alone and absolutely;
+the smooth, relative change is ours.
 """
 
 from __future__ import annotations
