@@ -11,6 +11,7 @@ from irradia.cli.bake_job import PRODUCTS, BakeJob, run_bake
 from irradia.cli.bake_views import ViewOptions
 from irradia.core.progress import silent_progress
 from irradia.export.map_files import FORMATS, read_map
+from irradia.formats.ies import IesTable, encode_ies
 from irradia.formats.lightmap import read_lightmap
 from irradia.scene.gltf.read import read_document
 from irradia.scene.lightmap_uv.options import LayoutOptions
@@ -100,6 +101,23 @@ def test_the_report_shows_maps_that_go_with_the_plain_one(everything, tmp_path):
     ):
         assert f'alt="{name}' in html
     assert "Noise, 95th percentile" in html
+
+
+def test_a_measured_lamp_shines_as_it_was_measured_and_is_in_the_provenance(tmp_path):
+    def leave_only_the_left_lamp(document):
+        node(document, "right lamp")["extras"] = {"irradia": {"mode": "off"}}
+
+    scene = write_workshop(tmp_path / "scene.gltf", leave_only_the_left_lamp)
+    isotropic = IesTable("C", np.array([0.0, 180.0]), np.array([0.0]), np.full((1, 2), 8.0), 2002, {})
+    (tmp_path / "lamp.ies").write_bytes(encode_ies(isotropic))
+    options = ["--mode", "direct", "--samples", "8", "--no-denoise"]
+    bake(scene, tmp_path / "plain", *options)
+    record = bake(scene, tmp_path / "measured", *options, "--ies", f"left lamp={tmp_path / 'lamp.ies'}")
+    plain, measured = (
+        read_lightmap(tmp_path / name / "lightmap.exr").pages for name in ("plain", "measured")
+    )
+    np.testing.assert_allclose(measured, 2.0 * plain, rtol=1e-3, atol=1e-6)  # the file's lamp has 4 cd
+    assert set(record["provenance"]["inputs"]) == {"scene.gltf", "lamp.ies"}
 
 
 def test_an_override_changes_what_the_light_is_reflected_by(tmp_path):
