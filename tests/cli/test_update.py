@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import shutil
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
 
 from irradia.cli import app
 from irradia.cli.bake_update import MEMORY
+from irradia.cli.output import INTERRUPTED
 from irradia.formats.lightmap import read_lightmap
 
 from .workshop import bake, lamp, node, write_workshop
@@ -145,6 +147,27 @@ def test_an_object_that_only_left_out_counts_as_changed_until_it_is_baked(again,
     assert "Changed: box." in capfd.readouterr().err
     again(nudge)
     assert "Changed: nothing." in capfd.readouterr().err
+
+
+def test_an_update_that_was_stopped_goes_on_to_the_same_bytes(first, again, tmp_path, monkeypatch):
+    @contextmanager
+    def stop_at_once(stop, say):
+        stop()
+        yield
+
+    scene = write_workshop(tmp_path / "scene.gltf", _move_box)
+    shutil.copytree(first / "baked", tmp_path / "through")
+    bake(scene, tmp_path / "through", "--update", *_RAW)
+    with monkeypatch.context() as patch:
+        patch.setattr("irradia.cli.bake_trace.asks_first", stop_at_once)
+        arguments = ["bake", str(scene), "-o", str(tmp_path / "out"), "--update", "--no-report", *_RAW]
+        assert app.run([*arguments, "--resolution", "32"]) == INTERRUPTED
+    update, _ = again(_move_box, "--update", "--resume")
+    assert 0.1 < update["rebaked_share"] < 0.9
+    stopped, through = (read_lightmap(tmp_path / name / "lightmap.exr") for name in ("out", "through"))
+    np.testing.assert_array_equal(stopped.pages, through.pages)
+    np.testing.assert_array_equal(stopped.extra["stale"], through.extra["stale"])
+    assert (tmp_path / "out" / MEMORY).read_bytes() == (tmp_path / "through" / MEMORY).read_bytes()
 
 
 def test_directional_maps_keep_their_directions(tmp_path):

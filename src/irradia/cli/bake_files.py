@@ -104,6 +104,8 @@ def bake_record(
 ) -> dict[str, Any]:
     """What was baked, how fast and how right: plain values, fit for JSON."""
     stats = baked.result.stats
+    if baked.update is not None:  # the rounds of an update have met only some of the texels
+        stats = {**stats, "noise_p95": None}
     return {
         "scene": baked.scene.name,
         "ended_by": baked.ended_by,
