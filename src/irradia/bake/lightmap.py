@@ -132,9 +132,16 @@ class LightmapBake:
         return self.light.to_host(self.bake.estimate())
 
     def result(self, progress: Progress | None = None) -> LightmapResult:
-        """The map as it is now, finished for use; ``progress`` shows stages."""
+        """The map as it is now, finished for use; ``progress`` shows stages.
+
+        A complete bake gives its memory on the device back first: finishing takes as much again.
+        """
         progress = progress or silent_progress()
-        estimate = self.estimate()
+        estimate, counts, stats = self.estimate(), self.bake.sample_counts(), self.stats()
+        moments = None if self.options.directional is None else self.bake.moments()
+        live = self.light.to_host(self.bake.live_light()) if self.light.channels.live else None
+        if self.bake.complete:
+            self.bake.release()
         finisher = self._finisher(progress)
         pages = finisher.irradiance(estimate)
         return LightmapResult(
@@ -142,11 +149,11 @@ class LightmapBake:
             estimate,
             self.footprints.hidden_share,
             self.valid,
-            self.bake.sample_counts(),
+            counts,
             pages,
-            self.stats(),
-            self._all_light(estimate, pages, finisher),
-            self._directional(pages, finisher, progress),
+            stats,
+            None if live is None else pages + finisher.companion(live, pages, lowest=0.0),
+            None if moments is None else self._directional(moments, pages, finisher, progress),
             self._shadows(pages, finisher, progress),
             self.lights,
             self.masks.channels,
@@ -163,14 +170,9 @@ class LightmapBake:
                 seams = find_seam_points(self.mesh, self.layout)
         return Finisher(self.texels, self.valid, options, progress, region=self.region, seams=seams)
 
-    def _all_light(self, estimate: F32, pages: F32, finisher: Finisher) -> F32 | None:
-        """The finished map and, where lights are live, their first bounce, which has little noise."""
-        if not self.light.channels.live:
-            return None
-        live = finisher.companion(self.light.to_host(self.bake.live_light()), pages, lowest=0.0)
-        return pages + live
-
-    def _directional(self, pages: F32, finisher: Finisher, progress: Progress) -> DirectionalMaps | None:
+    def _directional(
+        self, moments: F32, pages: F32, finisher: Finisher, progress: Progress
+    ) -> DirectionalMaps | None:
         mode = self.options.directional
         if mode is None:
             return None
@@ -180,7 +182,7 @@ class LightmapBake:
             mode,
             self.texels,
             pages,
-            self.bake.moments(),
+            moments,
             texel_normals(self.mesh, self.texels),
             self.valid,
             denoise=self.options.denoise,

@@ -67,6 +67,12 @@ class BakeOptions:
         ):
             if value is not None and not (math.isfinite(value) and value > 0.0):
                 raise InputError(f"expected a number above 0, found {value}", where=where)
+        if self.directional is not None and self.normal_maps:
+            raise InputError(
+                "expected directional maps or normal-mapped plain maps, found both",
+                where="--normal-maps",
+                fix="Directional maps are for normal maps at run time; bake those alone.",
+            )
         if self.integrator not in ("cached", "path"):
             raise InputError(f"expected cached or path, found {self.integrator!r}", where="--integrator")
         if self.mode not in ("full", "indirect", "direct"):

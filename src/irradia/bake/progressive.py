@@ -15,7 +15,7 @@ import hashlib
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -127,7 +127,7 @@ class ProgressiveBake:
         self.before_the_last_epoch: Callable[[], U32 | None] | None = None
         self.progression = Progression(light.empty_sums(), light.empty_sums(), light.empty_sums())
         self._seed, self._samples, self._time_s = seed, samples, time_s
-        self._reflectance = light.reflectance()
+        self._reflectance: TexelColour | None = light.reflectance()
         self._unread = light.cache_of_nothing(plan.cached, one_bounce=one_bounce)
         self._stopped = False
         self._gathering = False  # whether the last epoch has had a pass: a time limit leaves it that
@@ -205,6 +205,7 @@ class ProgressiveBake:
                 stage.note(f"{len(now.epochs)} epochs")
 
             now.settled = settle(first, bounce, self.light.mean, each)
+        self.light.give_back()
         now.n_rays += n_rays * len(self.texels) * len(now.epochs)
         now.total = now.direct.without_rays()
 
@@ -279,6 +280,8 @@ class ProgressiveBake:
         return Draw(n_rays, n_direct, seed, self._seed.child("direct").uint32(), first_subsample)
 
     def _cache(self, arriving: TexelColour, scale: float = 1.0) -> LightCache:
+        if self._reflectance is None:
+            raise RuntimeError("this bake has given its memory back")
         return self.light.cache(arriving, self._reflectance, scale)
 
     def _lanes(self, texels: U32, n_rays: int) -> Lanes:
@@ -342,6 +345,16 @@ class ProgressiveBake:
     def coarse(self) -> TexelColour:
         """E/π before the last epoch: the same random numbers give the same noise again."""
         return self._known_before
+
+    def release(self) -> None:
+        """Gives everything on the device back. Nothing can be asked or traced afterwards."""
+        from irradia.transport.backend import dr
+
+        empty = self.light.empty_sums()
+        self.progression = replace(self.progression, direct=empty, part=empty, total=empty, settled=None)
+        self._reflectance, self._unread = None, None
+        self.meter.release()
+        dr.flush_malloc_cache()
 
     def live_light(self) -> TexelColour:
         """First bounce of the lights that are lit live: in no map, but surfaces shine with it."""

@@ -80,7 +80,7 @@ def write_memory(path: Path, memory: Memory) -> None:
         **{f"sums/{name}": array for name, array in memory.sums.items()},
     }
     with write_atomic(path) as stream:
-        np.savez(stream, **arrays)  # type: ignore[arg-type]
+        np.savez(stream, **arrays)
 
 
 def read_memory(path: Path) -> Memory | None:

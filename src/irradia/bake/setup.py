@@ -51,6 +51,7 @@ def set_up(
     with progress.stage("hidden texels"):
         grid = TexelGrid(texels.pixel, texels.chart, texels.width_px, texels.height_px)
         footprints = light.clear_footprints(grid)
+        light.give_back()
         region = find_regions(texels, footprints.visible, footprints.cut_off, footprints.moved)
     valid = footprints.valid
     chosen = valid & _chosen_texels(texels, mesh, selection)

@@ -266,7 +266,7 @@ def _bake(job: BakeJob, progress: Progress, shards: Sequence[Shard]) -> Baked:
         bake_s,
         None,
         complete,
-        _ended_by(job, bake, complete),
+        _ended_by(job, result.stats, complete),
         probes,
         memory if complete else None,
         revision.update if revision else None,
@@ -280,12 +280,12 @@ def _bake(job: BakeJob, progress: Progress, shards: Sequence[Shard]) -> Baked:
     return replace(baked, view=render_view(scene, BakedLight(layout, shown), job.views, progress))
 
 
-def _ended_by(job: BakeJob, bake: LightmapBake, complete: bool) -> EndedBy:
+def _ended_by(job: BakeJob, stats: dict[str, Any], complete: bool) -> EndedBy:
     if not complete:
         return "interrupt"
-    if not bake.bake.complete:
+    if not stats["complete"]:
         return "time"
-    target, found = job.bake.noise, bake.noise()
+    target, found = job.bake.noise, stats["noise_p95"]
     return "noise" if target is not None and found is not None and found <= target else "samples"
 
 

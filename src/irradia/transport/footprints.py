@@ -15,7 +15,6 @@ from irradia.transport.subsamples import Subsamples
 from irradia.transport.texel_grid import PRECEDING, TexelGrid
 from irradia.transport.world import World
 
-
 _ALL_BUT_BLACK = 0.01
 
 

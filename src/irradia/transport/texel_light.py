@@ -149,6 +149,10 @@ class TexelLight:
         """Returns when all passes so far are done, so that progress tells the truth."""
         dr.sync_thread()
 
+    def give_back(self) -> None:
+        """Returns what is free on the device to the system; otherwise it is kept for the next array."""
+        dr.flush_malloc_cache()
+
     def empty_sums(self) -> TexelSums:
         """No rays yet."""
         return TexelSums.empty(self.n_texels, self.channels.count)

@@ -29,9 +29,8 @@ class NoiseMeter:
         self._pixel = mi.UInt32(pixel)
         self._size = int(np.prod(shape))
         self._width = shape[2]
-        owner = np.full(self._size, 0xFFFFFFFF, np.uint32)
-        owner[pixel] = chart
-        self._owner = mi.UInt32(owner)
+        self._chart, self._places = chart, pixel
+        self._owner: mi.UInt32 | None = None  # made when it is first asked for: it takes as much as a page
         self.deviations = dr.zeros(mi.Float, len(pixel))
         self.rounds = dr.zeros(mi.Float, len(pixel))
 
@@ -53,6 +52,8 @@ class NoiseMeter:
         rows = mi.Vector4f(self.deviations, freedom, mi.luminance(total.mean()), 0.0)
         dr.scatter(pages, rows, self._pixel)
         dr.eval(pages)
+        if self._owner is None:
+            self._owner = self._owners()
         owner = dr.gather(mi.UInt32, self._owner, self._pixel)
         pooled, count = mi.Vector3f(0.0), mi.Float(0.0)
         for x, y in _OFFSETS:
@@ -66,6 +67,17 @@ class NoiseMeter:
         error = dr.sqrt(variance / dr.maximum(mi.Float(total.rays), 1.0))
         both = np.array(mi.Point2f(error, pooled.z / count))
         return both[0], both[1]
+
+    def release(self) -> None:
+        """Gives its memory back."""
+        self._owner = None
+        self.deviations, self.rounds = mi.Float(), mi.Float()
+
+    def _owners(self) -> mi.UInt32:
+        """The chart of every pixel."""
+        owner = np.full(self._size, 0xFFFFFFFF, np.uint32)
+        owner[self._places] = self._chart
+        return mi.UInt32(owner)
 
     @property
     def knows(self) -> bool:
