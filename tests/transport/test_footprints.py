@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from irradia.bake.setup import cover
 from irradia.bake.regions import NOWHERE, find_regions
+from irradia.bake.setup import cover
 from irradia.bake.texels import TexelSet
 from irradia.core import silent_progress
 from irradia.scene.builtin.builder import SceneBuilder

@@ -128,7 +128,7 @@ class ProgressiveBake:
         self.progression = Progression(light.empty_sums(), light.empty_sums(), light.empty_sums())
         self._seed, self._samples, self._time_s = seed, samples, time_s
         self._reflectance: TexelColour | None = light.reflectance()
-        self._unread = light.cache_of_nothing(plan.cached, one_bounce=one_bounce)
+        self._one_bounce = one_bounce
         self._stopped = False
         self._gathering = False  # whether the last epoch has had a pass: a time limit leaves it that
         self._longest_pass_s = 0.0
@@ -174,13 +174,14 @@ class ProgressiveBake:
     def _first_light(self, progress: Progress) -> Iterator[Pass]:
         """Light straight from sources, which depends on no cache: once is enough for all epochs."""
         now, n_direct = self.progression, self.plan.first_direct
+        nothing = self._nothing()  # as large as a page, and needed by no later pass
         with progress.stage("first light", len(self.texels) * n_direct, "samples") as stage:
             done = self._count(now.direct.samples)
             while done < n_direct and not self._stopped:
                 n = min(2 * rays_per_pass(len(self.texels)), n_direct - done)
                 with self._timed():
                     now.direct = self.light.add_rays(
-                        now.direct, self._lanes(self.texels, n), self._draw(0, n), self._unread
+                        now.direct, self._lanes(self.texels, n), self._draw(0, n), nothing
                     )
                     self.light.wait()
                 done += n
@@ -232,7 +233,7 @@ class ProgressiveBake:
             chosen = self.before_the_last_epoch()
             if chosen is not None:
                 self.rounds.keep_only(chosen)
-        cache = self._cache(self._known_before) if self.plan.cached else self._unread
+        cache = self._cache(self._known_before) if self.plan.cached else self._nothing()
         while (turn := self.rounds.next()) is not None:
             drawn = int(np.array(now.part.rays)[turn.texels[0]])
             while drawn < turn.n_rays:
@@ -278,6 +279,10 @@ class ProgressiveBake:
         from irradia.transport.texel_light import Draw
 
         return Draw(n_rays, n_direct, seed, self._seed.child("direct").uint32(), first_subsample)
+
+    def _nothing(self) -> LightCache | None:
+        """What rays read that find no light of surfaces."""
+        return self.light.cache_of_nothing(self.plan.cached, one_bounce=self._one_bounce)
 
     def _cache(self, arriving: TexelColour, scale: float = 1.0) -> LightCache:
         if self._reflectance is None:
@@ -352,7 +357,7 @@ class ProgressiveBake:
 
         empty = self.light.empty_sums()
         self.progression = replace(self.progression, direct=empty, part=empty, total=empty, settled=None)
-        self._reflectance, self._unread = None, None
+        self._reflectance = None
         self.meter.release()
         dr.flush_malloc_cache()
 
