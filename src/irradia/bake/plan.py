@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 _LONGEST_GROWING = 64  # rays; a cache this clean leaves no noise worth tracing longer for
+_LONGEST_IN_A_HURRY = 8
 _MAX_SLICES = 32
 _SAMPLES_PER_SLICE = 1 << 22
 CACHED_NEE_RATIO = 0.5  # next-event samples per ray: a cache spares most of the noise that they would
@@ -37,7 +38,7 @@ def plan_epochs(samples: int, *, cached: bool, hurry: bool = False) -> EpochPlan
     """
     if not cached:
         return EpochPlan(0, (), cached=False)
-    longest = min(samples // (16 if hurry else 8), _LONGEST_GROWING)
+    longest = min(samples // 8, _LONGEST_IN_A_HURRY if hurry else _LONGEST_GROWING)
     growing = []
     size = 2
     while size <= longest:

@@ -280,7 +280,8 @@ def _ending(record: dict[str, Any]) -> str:
     }
     noise, lost = record["stats"]["noise_p95"], record["stats"]["clamped_off_share"]
     text = ends[record["ended_by"]]
-    text += "" if noise is None else f"; under {noise:.2%} of noise in 95 % of the texels"
+    if noise is not None and record["ended_by"] in ("noise", "time"):
+        text += f"; 95 % of the texels have less than {noise:.1%} noise before denoising"
     return text + ("" if lost is None else f"; the clamp has cut off {lost:.2%} of the light")
 
 
