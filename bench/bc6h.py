@@ -30,9 +30,8 @@ from irradia.core.provenance import source_commit
 from irradia.export.map_files import texel_weights
 from irradia.formats.bc6h import DARK, decode_bc6h, encode_bc6h
 from irradia.formats.lightmap import LightmapFile
-from support.baked_lightmap import lightmap_of
+from support.baked_lightmap import lightmap_of, parse_arguments
 
-SCENES = ("builtin:cornell", "builtin:atrium")
 PARTITIONS = (0, 1, 4, 8, 32)
 STOPS = -math.log2(DARK)
 TEXEL_BYTES = 6
@@ -59,7 +58,7 @@ class Row:
 
 def main() -> None:
     """Measures, prints and writes the table."""
-    arguments = _parse()
+    arguments = parse_arguments(__doc__)
     encode_bc6h(np.ones((8, 8, 3), np.float32))  # compiles
     rows = []
     for source in arguments.scene:
@@ -68,15 +67,6 @@ def main() -> None:
     text = _markdown(rows, arguments)
     write_text_atomic(RESULTS / "bc6h.md", text)
     print(text)
-
-
-def _parse() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("--scene", nargs="+", default=SCENES, help="a scene to bake, or a lightmap.exr")
-    parser.add_argument("--resolution", type=int, default=1024, help="page edge in texels")
-    parser.add_argument("--samples", type=int, default=256)
-    parser.add_argument("--repeats", type=int, default=3)
-    return parser.parse_args()
 
 
 def _measure(source: str, lightmap: LightmapFile, n_partitions: int, repeats: int) -> Row:

@@ -27,9 +27,8 @@ from irradia.core.device import cpu_name
 from irradia.core.provenance import source_commit
 from irradia.export.map_files import FORMATS, read_map, write_maps
 from irradia.formats.lightmap import LightmapFile
-from support.baked_lightmap import lightmap_of
+from support.baked_lightmap import lightmap_of, parse_arguments
 
-SCENES = ("builtin:cornell", "builtin:atrium")
 DARK = 2.0**-8
 RESULTS = Path(__file__).parent / "results"
 
@@ -56,7 +55,7 @@ class Row:
 
 def main() -> None:
     """Measures, prints and writes the table."""
-    arguments = _parse()
+    arguments = parse_arguments(__doc__)
     rows = []
     for source in arguments.scene:
         lightmap = lightmap_of(source, arguments.resolution, arguments.samples)
@@ -64,15 +63,6 @@ def main() -> None:
     text = _markdown(rows, arguments)
     write_text_atomic(RESULTS / "map_formats.md", text)
     print(text)
-
-
-def _parse() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("--scene", nargs="+", default=SCENES, help="a scene to bake, or a lightmap.exr")
-    parser.add_argument("--resolution", type=int, default=1024, help="page edge in texels")
-    parser.add_argument("--samples", type=int, default=256)
-    parser.add_argument("--repeats", type=int, default=3)
-    return parser.parse_args()
 
 
 def _measure(source: str, lightmap: LightmapFile, name: str, repeats: int) -> Row:

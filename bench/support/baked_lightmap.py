@@ -2,12 +2,25 @@
 
 from __future__ import annotations
 
+import argparse
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 from irradia.formats.lightmap import LightmapFile, read_lightmap
+
+SCENES = ("builtin:cornell", "builtin:atrium")
+
+
+def parse_arguments(description: str | None) -> argparse.Namespace:
+    """The command line of a benchmark that measures on lightmaps."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--scene", nargs="+", default=SCENES, help="a scene to bake, or a lightmap.exr")
+    parser.add_argument("--resolution", type=int, default=1024, help="page edge in texels")
+    parser.add_argument("--samples", type=int, default=256)
+    parser.add_argument("--repeats", type=int, default=3)
+    return parser.parse_args()
 
 
 def lightmap_of(source: str, resolution: int, samples: int) -> LightmapFile:

@@ -174,6 +174,8 @@ class ProgressiveBake:
     def _first_light(self, progress: Progress) -> Iterator[Pass]:
         """Light straight from sources, which depends on no cache: once is enough for all epochs."""
         now, n_direct = self.progression, self.plan.first_direct
+        if n_direct == 0:
+            return
         nothing = self._nothing()  # as large as a page, and needed by no later pass
         with progress.stage("first light", len(self.texels) * n_direct, "samples") as stage:
             done = self._count(now.direct.samples)

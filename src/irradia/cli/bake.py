@@ -14,6 +14,7 @@ from irradia.cli.sections import SectionedCommand
 
 if TYPE_CHECKING:
     from irradia.bake.occlusion import OcclusionOptions
+    from irradia.bake.options import BakeOptions
     from irradia.cli.bake_job import BakeJob, BakeSummary
 
 
@@ -137,19 +138,11 @@ def make_job(
     scene: str,
     out: Path,
     samples: int | None,
-    time_s: float | None,
-    noise: float | None,
-    adaptive: bool,
-    indirect_clamp: float | None,
-    mode: str,
     ao_distance: float | None,
     view_first: str | None,
     shard: tuple[int, int] | None,
     only: tuple[str, ...],
     update: bool,
-    directional: str | None,
-    normal_maps: bool,
-    no_seams: bool,
     probes: str | None,
     probe_samples: int,
     formats: str,
@@ -159,9 +152,7 @@ def make_job(
     checkpoint_s: float,
     resolution: int | None,
     texels_per_metre: float | None,
-    integrator: str,
     fast_rays: bool,
-    no_denoise: bool,
     no_report: bool,
     reference_spp: int,
     compatible: bool,
@@ -170,10 +161,10 @@ def make_job(
     threads: int | None,
     variant: str | None,
     pose_time: float | None,
-    **light: Any,
+    mode: str,
+    **choices: Any,
 ) -> BakeJob:
-    """The command line as a job."""
-    from irradia.bake.lightmap import BakeOptions
+    """The command line as a job; ``choices`` hold those of light and of :func:`_bake_options`."""
     from irradia.bake.probes.options import ProbeOptions
     from irradia.cli.bake_job import BakeJob
     from irradia.cli.bake_views import ViewOptions
@@ -185,23 +176,9 @@ def make_job(
         scene=scene,
         out=out,
         load=LoadOptions(pose_time=pose_time, variant=variant),
-        light=options.light_options(**light),
+        light=options.light_options(**{name: choices.pop(name) for name in options.LIGHT_NAMES}),
         layout=LayoutOptions(texels_per_metre=texels_per_metre, resolution=resolution),
-        bake=BakeOptions(
-            samples=options.sample_limit(samples, time_s, noise),
-            time_s=time_s,
-            noise=noise,
-            adaptive=adaptive,
-            indirect_clamp=indirect_clamp,
-            integrator=integrator,  # type: ignore[arg-type]
-            mode="full" if mode == "ao" else mode,  # type: ignore[arg-type]
-            directional=directional,  # type: ignore[arg-type]
-            normal_maps=normal_maps,
-            seams=not no_seams,
-            seed=seed,
-            fast_rays=fast_rays,
-            denoise=not no_denoise,
-        ),
+        bake=_bake_options(samples, mode, seed=seed, fast_rays=fast_rays, **choices),
         views=None if no_report else ViewOptions(reference_spp, seed=seed, fast_rays=fast_rays),
         compatible=compatible,
         shard=shard,
@@ -219,6 +196,30 @@ def make_job(
         view_first=view_first,
         device=device,  # type: ignore[arg-type]
         threads=threads,
+    )
+
+
+def _bake_options(
+    samples: int | None,
+    mode: str,
+    *,
+    time_s: float | None,
+    noise: float | None,
+    no_seams: bool,
+    no_denoise: bool,
+    **same_name: Any,
+) -> BakeOptions:
+    """What decides a lightmap's values."""
+    from irradia.bake.options import BakeOptions
+
+    return BakeOptions(
+        samples=options.sample_limit(samples, time_s, noise),
+        mode="full" if mode == "ao" else mode,  # type: ignore[arg-type]
+        time_s=time_s,
+        noise=noise,
+        seams=not no_seams,
+        denoise=not no_denoise,
+        **same_name,
     )
 
 
