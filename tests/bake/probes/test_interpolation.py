@@ -121,7 +121,7 @@ def test_light_does_not_come_through_a_thin_wall(lit_and_dark, placement):
 def test_plain_trilinear_would_leak_there(lit_and_dark):
     """So the scene does test what it claims to."""
     from irradia.bake.probes.neighbours import probes_around
-    from irradia.bake.probes.sh import irradiance
+    from irradia.core.sh import irradiance
 
     probes = lit_and_dark["grid:0.5"]
     at = np.array([(WALL_M / 2 + 0.05, 1.0, 0.0)])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from irradia.bake.probes.octahedral import bilinear_taps, octahedral_directions, octahedral_uv
-from irradia.bake.probes.sh import fibonacci_sphere
+from irradia.core.sh import fibonacci_sphere
 
 
 @pytest.mark.parametrize(

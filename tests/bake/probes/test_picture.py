@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from irradia.bake.probes.picture import draw_probes
-from irradia.bake.probes.sh import sh_basis
+from irradia.core.sh import sh_basis
 from irradia.formats.probes import EMPTY, FILLED
 from irradia.scene.types import Camera
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from irradia.bake.probes.sh import fibonacci_sphere, irradiance, sh_basis
+from irradia.core.sh import fibonacci_sphere, irradiance, sh_basis
 from irradia.scene.builtin.shapes import centred_box, quad
 from irradia.scene.merge import merge
 from irradia.scene.types import Environment, Light, Material, Scene

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from irradia.bake.probes.sh import fibonacci_sphere, irradiance, sh_basis
+from irradia.core.sh import fibonacci_sphere, irradiance, sh_basis
 from irradia.bake.probes.window import band_weights, window
 
 

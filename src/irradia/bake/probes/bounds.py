@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from irradia.bake.probes.sh import fibonacci_sphere
+from irradia.core.sh import fibonacci_sphere
 from irradia.scene.interior import find_interior_view
 from irradia.scene.merge import MergedMesh
 

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from irradia.bake.probes.neighbours import NOBODY, probes_around
 from irradia.bake.probes.octahedral import bilinear_taps, octahedral_uv
-from irradia.bake.probes.sh import irradiance
+from irradia.core.sh import irradiance
 from irradia.formats.probes import VALID, ProbeSet
 
 F64 = NDArray[np.float64]

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.bake.probes.placement import Placement
-from irradia.bake.probes.sh import irradiance
+from irradia.core.sh import irradiance
 from irradia.bake.probes.survey import MAX_BACKS, quick_validity
 from irradia.core.progress import Stage
 from irradia.formats.probes import ProbeOctree

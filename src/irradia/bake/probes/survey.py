@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.bake.probes.octahedral import octahedral_directions
-from irradia.bake.probes.sh import fibonacci_sphere, sh_basis
+from irradia.core.sh import fibonacci_sphere, sh_basis
 from irradia.core.progress import Stage
 
 if TYPE_CHECKING:

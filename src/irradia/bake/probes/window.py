@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from irradia.bake.probes.sh import BAND, fibonacci_sphere, irradiance_weights
+from irradia.core.sh import BAND, fibonacci_sphere, irradiance_weights
 
 N_DIRECTIONS = 1000
 # E at the dimmest of the directions must exceed this share of the mean E: between them, at most 0.06

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from irradia.bake.probes.sh import CONSTANTS, COSINE_LOBE, fibonacci_sphere, irradiance, sh_basis
+from irradia.core.sh import CONSTANTS, COSINE_LOBE, fibonacci_sphere, irradiance, sh_basis
 
 GOLDEN = {
     # direction: Y00, Y1-1 (y), Y10 (z), Y11 (x), Y2-2 (xy), Y2-1 (yz), Y20, Y21 (xz), Y22 (x² − y²)
