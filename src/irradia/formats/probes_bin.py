@@ -84,12 +84,39 @@ def encode_probes_bin(
     if len(positions) == 0 and aabb is None:
         aabb = np.zeros((2, 3), np.float32)
     low, high = (positions.min(axis=0), positions.max(axis=0)) if aabb is None else aabb
+    header = encode_header(len(positions), np.array([low, high]), VERSION)
+    return header + np.asarray(positions, "<f4").tobytes() + encode_coefficients(coefficients, quantity)
+
+
+def encode_header(count: int, aabb: NDArray[np.float32], version: int) -> bytes:
+    """The 32 bytes that both versions begin with.
+
+    Raises:
+        InputError: There are more points than the file can count.
+    """
+    if count >= 1 << 32:
+        raise InputError(f"expected fewer than 2^32 points, found {count}", fix="Keep them as .samples.")
+    return _HEADER.pack(count, *map(float, aabb.reshape(-1)), version)
+
+
+def decode_header(data: bytes, where: str) -> tuple[int, NDArray[np.float32], int]:
+    """Count, AABB (2, 3) and version, as they stand there.
+
+    Raises:
+        InputError: The file is shorter.
+    """
+    if len(data) < HEADER_BYTES:
+        raise InputError(f"expected a header of {HEADER_BYTES} bytes, found {len(data)}", where=where)
+    count, *corners, version = _HEADER.unpack_from(data)
+    return count, np.array(corners, np.float32).reshape(2, 3), version
+
+
+def encode_coefficients(coefficients: NDArray[np.float32], quantity: Quantity = "radiance") -> bytes:
+    """The file's 48 bytes for each probe of (N, 4 or 9, 3) coefficients of radiance in our order."""
     series = np.asarray(coefficients, np.float64)[:, :4]
     if quantity == "irradiance":
         series = series * _IRRADIANCE_OF_RADIANCE
-    by_channel = series[:, _FILE_FROM_OURS].transpose(0, 2, 1)
-    header = _HEADER.pack(len(positions), *map(float, low), *map(float, high), VERSION)
-    return header + np.asarray(positions, "<f4").tobytes() + by_channel.astype("<f4").tobytes()
+    return series[:, _FILE_FROM_OURS].transpose(0, 2, 1).astype("<f4").tobytes()
 
 
 def read_probes_bin(path: Path | str, *, quantity: Quantity = "radiance") -> BinProbes:
@@ -111,9 +138,7 @@ def read_probes_bin(path: Path | str, *, quantity: Quantity = "radiance") -> Bin
 
 def decode_probes_bin(data: bytes, where: str = "probes", *, quantity: Quantity = "radiance") -> BinProbes:
     """See :func:`read_probes_bin`."""
-    if len(data) < HEADER_BYTES:
-        raise InputError(f"expected a header of {HEADER_BYTES} bytes, found {len(data)}", where=where)
-    count, *corners, version = _HEADER.unpack_from(data)
+    count, aabb, version = decode_header(data, where)
     if version != VERSION:
         raise InputError(
             f"expected version {VERSION} (SH probes), found {version}",
@@ -123,7 +148,6 @@ def decode_probes_bin(data: bytes, where: str = "probes", *, quantity: Quantity 
     expected = HEADER_BYTES + PROBE_BYTES * count
     if len(data) != expected:
         raise InputError(f"expected {expected} bytes for {count} probes, found {len(data)}", where=where)
-    aabb = np.array(corners, np.float32).reshape(2, 3)
     positions = np.frombuffer(data, "<f4", 3 * count, HEADER_BYTES).reshape(-1, 3)
     stored = np.frombuffer(data, "<f4", 12 * count, HEADER_BYTES + 12 * count).reshape(-1, 3, 4)
     _check(aabb, positions, stored, where)

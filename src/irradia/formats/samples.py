@@ -26,7 +26,7 @@ import struct
 import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import IO
+from typing import IO, TYPE_CHECKING
 
 import numpy as np
 
@@ -34,6 +34,9 @@ from irradia.core.errors import InputError
 from irradia.core.files import write_atomic
 from irradia.core.lock import FileLock, acquire_lock, lock_holder
 from irradia.formats.sample_rows import F32, SampleInfo, check_rows
+
+if TYPE_CHECKING:
+    from irradia.formats.samples_bin import BinOptions
 
 VERSION = 1
 MAGIC = b"\x93SAMPLES"
@@ -191,16 +194,20 @@ class SampleWriter:
             self._lock.release()
 
 
-def open_samples(path: Path | str) -> SampleFile:
+def open_samples(path: Path | str, bin_options: BinOptions | None = None) -> SampleFile:
     """Opens a dataset; where ``path`` isn't there yet but ``path.part`` is, what has been written of it.
 
     Args:
-        path: A ``.samples`` file, or a ``.bin`` of the Unity project, which
-            :func:`irradia.formats.samples_bin.read_samples_bin` reads by its defaults.
+        path: A ``.samples`` file, or a ``.bin`` of the Unity project.
+        bin_options: What a ``.bin`` doesn't say of itself.
 
     Raises:
         InputError: It isn't there, is damaged, or holds numbers that can't be samples.
     """
+    if Path(path).suffix.lower() == ".bin" and not _has_our_magic(Path(path)):
+        from irradia.formats.samples_bin import read_samples_bin
+
+        return read_samples_bin(path, bin_options)
     for candidate in (Path(path), part_path(Path(path))):
         if candidate.is_file():
             return _open(candidate)
@@ -234,14 +241,18 @@ def encode_header(info: SampleInfo, n_rows: int) -> bytes:
     return (start + text).ljust(offset, b"\0")
 
 
+def _has_our_magic(path: Path) -> bool:
+    try:
+        with path.open("rb") as stream:
+            return stream.read(len(MAGIC)) == MAGIC
+    except OSError:
+        return False
+
+
 def _open(path: Path, n_checked: int = 0) -> SampleFile:
     """See :func:`open_samples`; the first ``n_checked`` rows have been checked before."""
     with path.open("rb") as stream:
         start = stream.read(_HEADER.size)
-        if not start.startswith(MAGIC) and path.suffix.lower() == ".bin":
-            from irradia.formats.samples_bin import read_samples_bin
-
-            return read_samples_bin(path)
         info, n_rows, offset = _read_header(start, stream, str(path))
         n_bytes = max(os.fstat(stream.fileno()).st_size - offset, 0)
         count = _n_rows(n_rows, n_bytes, info, str(path))
