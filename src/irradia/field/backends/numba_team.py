@@ -1,0 +1,49 @@
+"""Threads that run a kernel together.
+
+Kernels are compiled with ``nogil``, and each thread of a team calls the same kernel once. They share a
+counter of tasks: a thread takes the next task until none are left. So a slow thread holds up nobody, and as
+tasks write to memory of their own, the result doesn't depend on who took which.
+
+This is instead of Numba's ``parallel=True``: its default threading layer ends the process when two threads
+of a program use it at once, and its ``prange`` deals tasks out beforehand and takes seconds more to compile.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+
+from irradia.core.device import available_threads
+
+
+class Team:
+    """A fixed number of threads, the caller among them. One caller at a time.
+
+    Attributes:
+        n_threads: How many run each kernel.
+    """
+
+    def __init__(self, n_threads: int | None = None) -> None:
+        self.n_threads = n_threads or available_threads()
+        self._helpers = ThreadPoolExecutor(max(self.n_threads - 1, 1), thread_name_prefix="irradia-field")
+        self._next_task = np.zeros(1, np.int64)
+
+    def run(self, kernel: Callable[..., None], *arguments: Any) -> None:
+        """Calls ``kernel(thread, next_task, *arguments)`` on every thread and waits for all.
+
+        Args:
+            kernel: Compiled by :func:`irradia.field.backends.numba_vector.kernel`; takes its tasks by
+                ``take(next_task)``, and may use scratch memory that belongs to number ``thread``.
+            arguments: Arrays, numbers and named tuples of them.
+        """
+        self._next_task[0] = 0
+        others = range(1, self.n_threads)
+        running = [self._helpers.submit(kernel, i, self._next_task, *arguments) for i in others]
+        try:
+            kernel(0, self._next_task, *arguments)
+        finally:
+            for call in running:
+                call.result()
