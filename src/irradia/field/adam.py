@@ -1,0 +1,61 @@
+"""Adam and the running mean of parameters, as every backend computes them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from irradia.field.backend import F32, AdamOptions, Parameters, StepOptions, TrainState
+
+
+def adam(
+    value: F32, gradient: F32, first: F32, second: F32, step: int, rate: float, options: AdamOptions
+) -> tuple[F32, F32, F32]:
+    """One step of Adam (Kingma and Ba 2015, algorithm 1).
+
+    With ``skip_zero`` a value without gradient keeps its moments, while the bias correction goes by the
+    steps of all: tiny-cuda-nn instead counts the steps of each value, for 4 bytes more.
+
+    Args:
+        value: One array of parameters.
+        gradient: Of the loss with respect to it.
+        first: Running mean of gradients.
+        second: Running mean of their squares.
+        step: This one, from 1.
+        rate: Learning rate.
+        options: Decays and the like.
+
+    Returns:
+        The new value and moments.
+    """
+    new_first = options.beta1 * first + (1.0 - options.beta1) * gradient
+    new_second = options.beta2 * second + (1.0 - options.beta2) * gradient * gradient
+    first_unbiased = new_first / (1.0 - options.beta1**step)
+    second_unbiased = new_second / (1.0 - options.beta2**step)
+    new_value = value - rate * first_unbiased / (np.sqrt(second_unbiased) + options.epsilon)
+    if not options.skip_zero:
+        return new_value, new_first, new_second
+    still = gradient == 0.0
+    return (
+        np.where(still, value, new_value),
+        np.where(still, first, new_first),
+        np.where(still, second, new_second),
+    )
+
+
+def running_mean(mean: F32, value: F32, decay: float) -> F32:
+    """The mean with one more value in it; it starts from 0 and is biased toward it."""
+    return decay * mean + (1.0 - decay) * value
+
+
+def inference_parameters(state: TrainState, options: StepOptions) -> Parameters:
+    """What to evaluate and ship: de-biased running means, and frozen parameters as they are.
+
+    Without means, or before the first step, the parameters themselves.
+    """
+    if not state.average or state.step == 0:
+        return dict(state.parameters)
+    weight = np.float32(1.0 - options.average**state.step)
+    return {
+        name: value if name in options.frozen else state.average[name] / weight
+        for name, value in state.parameters.items()
+    }
