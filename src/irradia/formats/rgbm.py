@@ -109,6 +109,19 @@ def read_rgbm_png(path: Path | str) -> RgbmImage:
     return RgbmImage(decode_rgbm(texels, coding), coding, metadata)
 
 
+def is_rgbm_png(path: Path | str) -> bool:
+    """Whether a file is a PNG that says how to decode it; its pixels aren't read."""
+    from PIL import Image
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            with Image.open(path, formats=("PNG",)) as image:
+                return RANGE_KEY in image.info
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+        return False
+
+
 def _read_rgba(path: Path | str) -> tuple[U8, dict[str, str]]:
     from PIL import Image
 
