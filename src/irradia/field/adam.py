@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from irradia.field.backend import F32, AdamOptions, Parameters, StepOptions, TrainState
+from irradia.field.backend import AdamOptions, Parameters, StepOptions, TrainState
+from irradia.field.encoding import Array
 
 
 def adam(
-    value: F32, gradient: F32, first: F32, second: F32, step: int, rate: float, options: AdamOptions
-) -> tuple[F32, F32, F32]:
+    value: Array, gradient: Array, first: Array, second: Array, step: int, rate: float, options: AdamOptions
+) -> tuple[Array, Array, Array]:
     """One step of Adam (Kingma and Ba 2015, algorithm 1).
 
     With ``skip_zero`` a value without gradient keeps its moments, while the bias correction goes by the
@@ -42,7 +43,7 @@ def adam(
     )
 
 
-def running_mean(mean: F32, value: F32, decay: float) -> F32:
+def running_mean(mean: Array, value: Array, decay: float) -> Array:
     """The mean with one more value in it; it starts from 0 and is biased toward it."""
     return decay * mean + (1.0 - decay) * value
 
