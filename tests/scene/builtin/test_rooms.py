@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+
+from irradia.scene.builtin.rooms import DOOR_HEIGHT_M, DOOR_Z_M, HEIGHT_M, LENGTH_M, WALL_M, WIDTH_M
 
 
 def edge_counts(part) -> Counter:
@@ -56,3 +59,36 @@ def test_cornell_blocks_face_outward(node, parts):
     (block,) = (p for p in parts("cornell") if p.node == node)
     centre = block.positions.mean(axis=0)
     assert np.einsum("vc,vc->v", block.normals, block.positions - centre).min() > 0
+
+
+def _shell(parts) -> list:
+    return [part for part in parts("rooms") if part.node == "shell"]
+
+
+def test_shell_of_the_two_rooms_is_closed_without_an_edge_of_three_faces(parts):
+    assert set(edge_counts(_joined(_shell(parts))).values()) == {2}
+
+
+def test_walls_between_and_around_the_two_rooms_are_solid(parts):
+    """Volume outside less the hollow inside is that of the walls: 10 cm all round and between."""
+    length, width, height = 2 * LENGTH_M + 3 * WALL_M, WIDTH_M + 2 * WALL_M, HEIGHT_M + 2 * WALL_M
+    hollow = 2 * LENGTH_M * WIDTH_M * HEIGHT_M
+    hollow += WALL_M * DOOR_HEIGHT_M * (DOOR_Z_M[1] - DOOR_Z_M[0])
+    assert signed_volume(_joined(_shell(parts))) == pytest.approx(length * width * height - hollow, rel=1e-5)
+
+
+@pytest.mark.parametrize("node", ["table", "bench", "shelf", "chest", "lamp"])
+def test_furniture_of_the_two_rooms_is_solid_and_stands_inside(node, parts):
+    whole = _joined([part for part in parts("rooms") if part.node == node])
+    assert signed_volume(whole) > 0
+    assert whole.positions[:, 1].min() > -1e-6
+    assert whole.positions[:, 1].max() < HEIGHT_M
+    assert np.abs(whole.positions[:, 2]).max() < WIDTH_M / 2
+
+
+def _joined(several) -> SimpleNamespace:
+    first = np.cumsum([0, *(len(part.positions) for part in several)])
+    return SimpleNamespace(
+        positions=np.concatenate([part.positions for part in several]),
+        indices=np.concatenate([part.indices + f for part, f in zip(several, first, strict=False)]),
+    )

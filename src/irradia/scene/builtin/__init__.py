@@ -37,6 +37,7 @@ _SCENES: dict[str, tuple[str, tuple]] = {
     "pane": ("pane", ()),
     "cylinder": ("cylinder", ()),
     "leaks": ("leaks", ()),
+    "rooms": ("rooms", ()),
     "blocks": ("blocks", ()),
     "foliage": ("foliage", ()),
     "lights": ("lights", ()),
