@@ -25,6 +25,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "info": ("info", "What is in a scene and what the bake will do with it."),
     "bake": ("bake", "Bake a scene's lightmaps, with baked .glb and report."),
     "merge": ("merge", "Join the shards of one bake."),
+    "sample": ("sample", "Sample a scene's light, for a field to learn from."),
     "render": ("render", "Path-trace an image of a scene or of a baked result."),
     "compare": ("compare", "Metrics between two images or lightmaps."),
 }

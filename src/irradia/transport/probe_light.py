@@ -111,7 +111,7 @@ def gather_sh(
         last = dr.minimum((block + 1) * _SAMPLES_PER_BLOCK, total)
         origin = dr.gather(mi.Point3f, o, probe)
         least = dr.gather(mi.Float, mi.Float(np.ascontiguousarray(least_m[part], np.float32)), probe)
-        sums = _gather_loop(world, origin, least, block * _SAMPLES_PER_BLOCK, last, stream, cache)
+        sums = project_light(world, origin, least, block * _SAMPLES_PER_BLOCK, last, stream, cache)
         dr.eval(sums)  # all in one launch: each reduction would start one of its own
         channels = [dr.block_sum(channel, n_blocks) for colour in sums for channel in colour]
         stacked = np.stack([np.array(channel) for channel in channels], axis=1) / np.float32(n_samples)
@@ -119,7 +119,7 @@ def gather_sh(
 
 
 @dr.syntax
-def _gather_loop(
+def project_light(
     world: World,
     origin: mi.Point3f,
     least: mi.Float,
@@ -128,14 +128,24 @@ def _gather_loop(
     stream: mi.UInt32,
     cache: LightCache | None,
 ) -> list[mi.Color3f]:
-    """Sums over samples ``first`` to ``last`` of each lane."""
+    """Sums of SH over samples ``first`` to ``last`` of each lane, N_COEFFICIENTS of them.
+
+    Args:
+        world: The scene.
+        origin: Where each lane looks from.
+        least: See ``least_m`` of :func:`gather_sh`.
+        first: Number of the first sample.
+        last: Number after the last.
+        stream: Each lane's random numbers.
+        cache: Stored light of mapped surfaces; None traces whole paths.
+    """
     sums = [mi.Color3f(0.0) for _ in range(N_COEFFICIENTS)]
     k = mi.UInt32(first)
     while k < last:
         sampler = Sampler(mi.UInt32(k), mi.UInt32(stream))
 
         # ---- a ray in a uniformly drawn direction ----
-        direction = _uniform_sphere(sampler.next_2d())
+        direction = uniform_sphere(sampler.next_2d())
         light, towards = _direct(world, origin, least, sampler)
         ray = start(origin, direction, mi.Float(_UNIFORM), mi.Float(1.0), sampler, mi.Bool(True))
         radiance = trace(world, ray, cache).radiance * (1.0 / _UNIFORM)
@@ -214,7 +224,7 @@ def _project(sums: list[mi.Color3f], direction: mi.Vector3f, light: mi.Color3f) 
     return [total + light * value for total, value in zip(sums, _sh(direction), strict=True)]
 
 
-def _uniform_sphere(u: mi.Point2f) -> mi.Vector3f:
+def uniform_sphere(u: mi.Point2f) -> mi.Vector3f:
     """A direction, all equally likely."""
     z = 1.0 - 2.0 * u.x
     radius = dr.safe_sqrt(1.0 - z * z)
