@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
-from typing import Any
+from types import UnionType
+from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 from irradia.core.errors import InputError
 from irradia.core.names import did_you_mean
@@ -102,12 +103,27 @@ def _plain(value: Any, where: str) -> Any:
 
 def _make(made: type[Any], values: dict[str, Any], where: str) -> Any:
     _check_known(values, [f.name for f in fields(made)], "key", where)
+    hints = get_type_hints(made)
+    for key, value in values.items():
+        _check_type(value, hints[key], f"{where}/{key}")
     try:
         return made(**values)
     except InputError as error:
         raise InputError(error.message, where=where, fix=error.fix) from None
-    except TypeError as error:
-        raise InputError(f"a value has the wrong type: {error}", where=where) from None
+
+
+def _check_type(value: Any, hint: Any, where: str) -> None:
+    """Refuses values of a wrong type; a float may be written as a whole number, a bool is no number."""
+    options = get_args(hint)
+    if get_origin(hint) is Literal:
+        if value not in options:
+            raise InputError(f"unknown value {value!r}", where=where, fix=did_you_mean(str(value), options))
+        return
+    kinds = [get_origin(kind) or kind for kind in (options if isinstance(hint, UnionType) else (hint,))]
+    accepted = (*kinds, int) if float in kinds else tuple(kinds)
+    if not isinstance(value, accepted) or (isinstance(value, bool) and bool not in kinds):
+        wanted = " or ".join(kind.__name__ for kind in kinds)
+        raise InputError(f"expected {wanted}, found {value!r}", where=where)
 
 
 def _check_known(names: Iterable[str], known: Iterable[str], what: str, where: str) -> None:

@@ -29,8 +29,8 @@ class Composite(Encoding):
     parts: tuple[Encoding, ...] = (Identity(),)
 
     def __post_init__(self) -> None:
-        if not self.parts:
-            raise InputError("expected at least one part of a composite encoding, found none")
+        if not self.parts or not all(isinstance(part, Encoding) for part in self.parts):
+            raise InputError("expected at least one part of a composite encoding, and all of them encodings")
 
     @property
     def n_outputs(self) -> int:

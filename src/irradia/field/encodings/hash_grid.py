@@ -91,7 +91,7 @@ class HashGrid(Encoding):
             raise InputError(f"expected resolutions that grow from at least 2 to at most 2^20, found {found}")
         if self.convention not in ("tiny-cuda-nn", "floor"):
             raise InputError(f"expected the convention tiny-cuda-nn or floor, found {self.convention!r}")
-        if len(self.primes) != 3 or not all(0 < prime < 1 << 32 for prime in self.primes):
+        if len(self.primes) != 3 or not all(isinstance(p, int) and 0 < p < 1 << 32 for p in self.primes):
             raise InputError(f"expected three factors below 2^32, found {self.primes}")
 
     @property
