@@ -45,7 +45,7 @@ class Frequency(Encoding):
         half_turns = x[:, :, None] * np.exp2(np.arange(self.n_frequencies)).astype(x.dtype)
         half_turns -= 2.0 * np.rint(0.5 * half_turns)
         angle = np.pi * half_turns.astype(np.float64)
-        waves = np.stack([np.sin(angle), np.cos(angle)], axis=-1).reshape(len(x), -1)
+        waves = np.stack([np.sin(angle), np.cos(angle)], axis=-1).reshape(len(x), 6 * self.n_frequencies)
         if self.include_identity:
             waves = np.concatenate([x, waves], axis=1)
         return waves.astype(parameters.dtype)

@@ -127,7 +127,7 @@ class HashGrid(Encoding):
         for i, level in enumerate(self.levels()):
             for entry, weight in self._corners(level, x):
                 features[:, i] += weight[:, None].astype(parameters.dtype) * table[entry]
-        return features.reshape(len(x), -1)
+        return features.reshape(len(x), self.n_outputs)
 
     def backward(self, x: Array, parameters: Array, gradient: Array) -> Array:
         """Spreads each feature's gradient over its eight corners."""

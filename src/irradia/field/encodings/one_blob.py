@@ -39,7 +39,7 @@ class OneBlob(Encoding):
         """Shares (N, 3 · bins)."""
         edges = np.arange(self.n_bins + 1)
         below_edge = _quartic_cdf(edges - x[:, :, None].astype(np.float64) * self.n_bins)
-        return np.diff(below_edge, axis=-1).reshape(len(x), -1).astype(parameters.dtype)
+        return np.diff(below_edge, axis=-1).reshape(len(x), self.n_outputs).astype(parameters.dtype)
 
 
 def _quartic_cdf(u: Array) -> Array:

@@ -70,7 +70,7 @@ class TriPlane(Encoding):
         features = np.zeros((len(x), len(PLANES), self.n_features), parameters.dtype)
         for plane, texel, weight in self._corners(x):
             features[:, plane] += weight[:, None].astype(parameters.dtype) * texels[texel]
-        return features.reshape(len(x), -1)
+        return features.reshape(len(x), self.n_outputs)
 
     def backward(self, x: Array, parameters: Array, gradient: Array) -> Array:
         """Spreads each plane's gradient over the four texels of a lookup."""
