@@ -23,6 +23,9 @@ class Comparison:
         flip: (H, W) HDR-FLIP error in [0, 1].
         scores: Metric by name, as :mod:`irradia.metrics` gives them.
         reference_spp, full_spp: Samples per pixel of the references.
+        label: What ``baked`` is called on the page.
+        under_noise: Names of scores that the reference's own noise hides.
+        exposure_ev: Stops; None for automatic exposure of the reference.
     """
 
     name: str
@@ -33,6 +36,9 @@ class Comparison:
     scores: Mapping[str, float]
     reference_spp: int
     full_spp: int = 0
+    label: str = "Baked"
+    under_noise: frozenset[str] = frozenset()
+    exposure_ev: float | None = None
 
 
 @dataclass(frozen=True)
@@ -116,6 +122,60 @@ class Convergence:
 
 
 @dataclass(frozen=True)
+class Rival:
+    """One way to store a scene's light, and how far it is from the truth.
+
+    Attributes:
+        name: For people.
+        n_bytes: As shipped.
+        flip: Mean HDR-FLIP over the views; None where it has no pictures.
+        relmse: Likewise, the reference's noise removed.
+        mse: Mean squared error at places in space; None where it knows only surfaces.
+        under_noise: Whether ``flip`` is no more than the reference's own noise.
+    """
+
+    name: str
+    n_bytes: int
+    flip: float | None = None
+    relmse: float | None = None
+    mse: float | None = None
+    under_noise: bool = False
+
+
+@dataclass(frozen=True)
+class FieldSummary:
+    """A neural field, judged.
+
+    Attributes:
+        facts: Label and value of what it is and what it costs, in reading order.
+        comparisons: Views; may be empty.
+        rivals: The field first, then what it is compared with.
+    """
+
+    facts: tuple[tuple[str, str], ...]
+    comparisons: tuple[Comparison, ...]
+    rivals: tuple[Rival, ...]
+
+
+@dataclass(frozen=True)
+class EvaluationData:
+    """Everything in the report of one field.
+
+    Attributes:
+        title: The scene's name.
+        stage_s: Wall seconds by stage.
+        provenance: :meth:`irradia.core.provenance.Provenance.to_dict`.
+        notes: What the user should know.
+    """
+
+    title: str
+    field: FieldSummary
+    stage_s: Mapping[str, float]
+    provenance: Mapping[str, Any]
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class ReportData:
     """Everything in one report.
 
@@ -125,6 +185,7 @@ class ReportData:
         comparisons: Views; may be empty.
         notes: What the user should know: defaults taken, things unsupported.
         provenance: :meth:`irradia.core.provenance.Provenance.to_dict`.
+        neural_field: Where one was trained from the bake.
     """
 
     title: str
@@ -135,3 +196,4 @@ class ReportData:
     provenance: Mapping[str, Any]
     convergence: Convergence | None = None
     notes: tuple[str, ...] = ()
+    neural_field: FieldSummary | None = None

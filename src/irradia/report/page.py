@@ -1,40 +1,19 @@
-"""Puts the page together."""
+"""Puts the page of a bake together."""
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Mapping
 from html import escape
-from importlib.resources import files
 from pathlib import Path
-from string import Template
-from typing import Any
 
 from irradia.core.colour import automatic_exposure_ev
 from irradia.core.files import write_text_atomic
 from irradia.report import charts, text
-from irradia.report.data import Comparison, LightmapSummary, MapPicture, Performance, ReportData
-from irradia.report.pictures import (
-    F32,
-    data_uri,
-    display,
-    error_colours,
-    error_gradient_css,
-    map_display,
-    page_display,
-)
-
-# Metric: label, and what a good value is.
-_SCORES = {
-    "flip": ("HDR-FLIP, mean", "0 is equal; under 0.05 is hard to see side by side"),
-    "psnr": ("PSNR", "decibels, after tone mapping; more is better"),
-    "relmse": ("relMSE", "0 is equal; the reference's own noise counts"),
-    "relmse_noise_free": ("relMSE, noise of the reference removed", "0 is equal"),
-    "smape": ("SMAPE", "0 is equal, 2 is the worst"),
-    "mean_ratio": ("Mean ratio", "1 is equal brightness"),
-    "p95": ("95th percentile of the relative error", "0 is equal"),
-}
+from irradia.report.comparison import comparison_section
+from irradia.report.data import Convergence, LightmapSummary, MapPicture, Performance, ReportData
+from irradia.report.neural_field import field_sections
+from irradia.report.pictures import F32, data_uri, map_display, page_display
+from irradia.report.sheet import card, pairs, provenance, section, sheet
 
 
 def write_report(path: Path | str, data: ReportData) -> None:
@@ -44,23 +23,22 @@ def write_report(path: Path | str, data: ReportData) -> None:
 
 def render_report(data: ReportData) -> str:
     """The whole page as text: pictures, style and script inside, no request to anywhere."""
-    return Template(_asset("report.html")).substitute(
-        title=escape(data.title),
-        style=_asset("report.css"),
-        script=_asset("report.js"),
-        subtitle=_subtitle(data),
-        notes=_notes(data.notes),
-        comparisons="".join(_comparison(c, i) for i, c in enumerate(data.comparisons)),
-        lightmap=_lightmap(data.lightmap),
-        performance=_performance(data.performance),
-        convergence=_convergence(data),
-        facts=_pairs(data.facts),
-        provenance=_provenance(data.provenance),
+    n_views = len(data.comparisons)
+    field = field_sections(data.neural_field, first_view=n_views) if data.neural_field else ()
+    return sheet(
+        data.title,
+        _subtitle(data),
+        data.notes,
+        (
+            *(comparison_section(view, index) for index, view in enumerate(data.comparisons)),
+            *field,
+            section("Lightmap", _lightmap(data.lightmap)),
+            section("Cost", card(_performance(data.performance))),
+            section("Mean ratio over samples", _convergence(data.convergence)),
+            section("Scene", pairs(data.facts)),
+            section("Provenance", provenance(data.provenance)),
+        ),
     )
-
-
-def _asset(name: str) -> str:
-    return files("irradia.report").joinpath("assets", name).read_text(encoding="utf-8")
 
 
 def _subtitle(data: ReportData) -> str:
@@ -70,87 +48,6 @@ def _subtitle(data: ReportData) -> str:
         f"baked in {text.duration(data.performance.bake_s)}",
     ]
     return " · ".join(parts)
-
-
-def _notes(notes: tuple[str, ...]) -> str:
-    if not notes:
-        return ""
-    return f'<ul class="notes">{"".join(f"<li>{escape(n)}</li>" for n in notes)}</ul>'
-
-
-# -- Comparison --------------------------------------------------------------------------------
-
-
-def _comparison(view: Comparison, index: int) -> str:
-    """The stage with its layers, what can be shown on it, and the numbers."""
-    exposure_ev = automatic_exposure_ev(view.reference)
-    layers = {
-        "baked": ("Baked", data_uri(display(view.baked, exposure_ev))),
-        "reference": ("Reference", data_uri(display(view.reference, exposure_ev))),
-    }
-    if view.full is not None:
-        layers["full"] = ("Full materials", data_uri(display(view.full, exposure_ev)))
-    layers["flip"] = ("FLIP", data_uri(error_colours(view.flip)))
-    height, width = view.reference.shape[:2]
-    pictures = "".join(
-        f'<img class="layer" data-layer="{key}" src="{uri}" draggable="false"'
-        f' alt="{escape(view.name)}: {label}">'
-        for key, (label, uri) in layers.items()
-    )
-    buttons = "".join(
-        f'<button type="button" data-show="{key}" aria-pressed="{str(key == "slider").lower()}">'
-        f"<kbd>{number}</kbd>{label}</button>"
-        for number, (key, label) in enumerate(
-            {"slider": "Slider", **{k: label for k, (label, _) in layers.items()}}.items(), start=1
-        )
-    )
-    return f"""
-<section class="comparison" id="view-{index}">
-  <h2>{escape(view.name)} <small>exposure {text.stops(exposure_ev)} · {width} × {height}</small></h2>
-  <div class="modes" role="toolbar" aria-label="What is shown">{buttons}</div>
-  <div class="stage" data-mode="slider" tabindex="0" style="aspect-ratio:{width}/{height}">
-    {pictures}
-    <div class="divider" role="slider" aria-label="Between baked and reference"
-         aria-valuemin="0" aria-valuemax="100" aria-valuenow="50"></div>
-    <span class="tag tag-left">Baked</span><span class="tag tag-right">Reference, diffuse</span>
-  </div>
-  <p class="quiet hint">Drag the line, scroll to zoom, drag to pan, double-click to fit.
-    Keys 1 to 5 switch, arrows move the line.</p>
-  <div class="columns">
-    <div>{_beside(view)}</div>
-    <div><h3>Baked against the reference</h3>{_scores(view)}</div>
-  </div>
-</section>"""
-
-
-def _beside(view: Comparison) -> str:
-    """The error map with its scale, and the unscored picture; the script copies both from the stage."""
-    scale = f'<span class="scale" style="background:{error_gradient_css()}"></span>'
-    parts = [
-        f'<figure><img data-copy="flip" alt="FLIP error map">'
-        f"<figcaption>HDR-FLIP error 0 {scale} 1</figcaption></figure>"
-    ]
-    if view.full is not None:
-        parts.append(
-            f'<figure><img data-copy="full" alt="Full materials">'
-            f"<figcaption>Full materials, {view.full_spp} spp: for the eye, not scored</figcaption></figure>"
-        )
-    return f'<div class="pair">{"".join(parts)}</div>'
-
-
-def _scores(view: Comparison) -> str:
-    rows = []
-    for key, value in view.scores.items():
-        label, meaning = _SCORES.get(key, (key, ""))
-        rows.append(
-            f"<tr><td>{escape(label)}<small>{escape(meaning)}</small></td>"
-            f'<td class="value">{text.score(value)}</td></tr>'
-        )
-    note = f"Both are diffuse transport; the reference took {view.reference_spp} samples per pixel."
-    return f'<table class="numbers scores">{"".join(rows)}</table><p class="quiet">{note}</p>'
-
-
-# -- Lightmap, cost, origin --------------------------------------------------------------------
 
 
 def _lightmap(lightmap: LightmapSummary) -> str:
@@ -171,7 +68,7 @@ def _lightmap(lightmap: LightmapSummary) -> str:
         for i, uri in enumerate(_page_uris(lightmap, exposure_ev))
     )
     figures += "".join(_companion(companion, lightmap.coverage[0]) for companion in lightmap.companions)
-    return f'{_pairs(facts)}<div class="pages">{figures}</div>'
+    return f'{pairs(facts)}<div class="pages">{figures}</div>'
 
 
 def _companion(companion: MapPicture, coverage: F32) -> str:
@@ -183,8 +80,8 @@ def _companion(companion: MapPicture, coverage: F32) -> str:
 
 
 def _page_uris(lightmap: LightmapSummary, exposure_ev: float) -> list[str]:
-    pairs = zip(lightmap.pages, lightmap.coverage, strict=True)
-    return [data_uri(page_display(page, cover, exposure_ev), lossless=False) for page, cover in pairs]
+    covered = zip(lightmap.pages, lightmap.coverage, strict=True)
+    return [data_uri(page_display(page, cover, exposure_ev), lossless=False) for page, cover in covered]
 
 
 def _covered(lightmap: LightmapSummary, page: int) -> float:
@@ -199,25 +96,12 @@ def _performance(performance: Performance) -> str:
         *((label, text.count(value)) for label, value in performance.counts.items()),
     ]
     bar = charts.stage_bar(performance.stage_s)
-    return f'<div class="columns"><div>{bar}</div><div>{_pairs(facts)}</div></div>'
+    return f'<div class="columns"><div>{bar}</div><div>{pairs(facts)}</div></div>'
 
 
-def _convergence(data: ReportData) -> str:
-    convergence = data.convergence
+def _convergence(convergence: Convergence | None) -> str:
     if convergence is None or not convergence.samples:
         return ""
     if not all(math.isfinite(r) for r in convergence.mean_ratio):
         return ""
-    plot = charts.mean_ratio_plot(convergence)
-    return f'<section><h2>Mean ratio over samples</h2><div class="card">{plot}</div></section>'
-
-
-def _provenance(provenance: Mapping[str, Any]) -> str:
-    simple = [(k, str(v)) for k, v in provenance.items() if not isinstance(v, (dict, list)) and v is not None]
-    record = escape(json.dumps(provenance, indent=2, default=str))
-    return f"{_pairs(simple)}<details><summary>The whole record</summary><pre>{record}</pre></details>"
-
-
-def _pairs(facts: tuple[tuple[str, str], ...] | list[tuple[str, str]]) -> str:
-    rows = "".join(f"<div><dt>{escape(k)}</dt><dd>{escape(v)}</dd></div>" for k, v in facts)
-    return f'<dl class="facts">{rows}</dl>'
+    return card(charts.mean_ratio_plot(convergence))

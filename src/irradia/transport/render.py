@@ -7,7 +7,6 @@ Single-sided surfaces are invisible from behind, as in engines.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -19,6 +18,7 @@ from irradia.scene.layout import LightmapLayout
 from irradia.scene.merge import CAMERA_LOD, merge, seen_by_camera
 from irradia.scene.types import Camera, Scene
 from irradia.transport.backend import dr, mi
+from irradia.transport.camera_rays import camera_ray
 from irradia.transport.geometry import Hit
 from irradia.transport.path import LightCache, start, trace
 from irradia.transport.sampling import Sampler, hash_u32
@@ -154,24 +154,13 @@ class _Renderer:
         k = mi.UInt32(first)
         while k < last:
             sampler = Sampler(mi.UInt32(k), mi.UInt32(seed))
-            origin, direction = self._camera_ray(pixel, sampler.next_2d())
+            jitter = sampler.next_2d()
+            origin, direction = camera_ray(self._camera, self._width, self._height, pixel, jitter)
             ray = start(origin, direction, mi.Float(1.0), mi.Float(0.0), sampler, mi.Bool(True), self._lod)
             ray = trace(self._world, ray, cache, cull_backs=True)
             total += ray.radiance
             k += 1
         return total
-
-    def _camera_ray(self, pixel: mi.UInt32, jitter: mi.Point2f) -> tuple[mi.Point3f, mi.Vector3f]:
-        """A ray through a random place of the pixel."""
-        row = pixel // self._width
-        column = pixel - row * self._width
-        half_height = math.tan(self._camera.yfov_rad / 2.0)
-        scale = 2.0 * half_height / self._height
-        x = (mi.Float(column) + jitter.x - 0.5 * self._width) * scale
-        y = (0.5 * self._height - mi.Float(row) - jitter.y) * scale
-        m = [[float(v) for v in row] for row in self._camera.world_from_camera]
-        direction = mi.Vector3f(*[m[i][0] * x + m[i][1] * y - m[i][2] for i in range(3)])
-        return mi.Point3f(*[m[i][3] for i in range(3)]), dr.normalize(direction)
 
     def image(self) -> NDArray[np.float32]:
         """Mean over samples."""

@@ -1,0 +1,224 @@
+"""A whole evaluation: references, the field and its rivals in pictures and in space, files."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irradia.cli.eval_baselines import Baseline
+from irradia.cli.eval_options import EvalJob, PictureOptions
+from irradia.core.errors import InputError
+from irradia.core.progress import Progress
+from irradia.core.rng import Seed
+from irradia.scene.types import Camera, Scene
+
+if TYPE_CHECKING:
+    from irradia.cli.eval_reference import Reference
+    from irradia.cli.eval_space import SpaceSamples
+    from irradia.field.evaluation import LeakRatio, PictureScores, SpaceScores
+    from irradia.field.field import Field
+    from irradia.transport.render import RenderOptions
+
+F32 = NDArray[np.float32]
+STALE = ("eval.json", "eval.html", "view*.png", "error*.png")
+
+
+@dataclass(frozen=True)
+class View:
+    """One camera's picture of one rival.
+
+    Attributes:
+        picture: (H, W, 3) linear radiance.
+    """
+
+    picture: F32
+    scores: PictureScores
+
+
+@dataclass(frozen=True)
+class Judged:
+    """One way to store the light, judged.
+
+    Attributes:
+        name: For people.
+        n_bytes: As shipped.
+        views: By camera.
+        space, leaks: None where it knows only surfaces, or nothing was drawn in space.
+    """
+
+    name: str
+    n_bytes: int
+    views: tuple[View, ...]
+    space: SpaceScores | None = None
+    leaks: LeakRatio | None = None
+
+    @property
+    def flip(self) -> float | None:
+        """Mean over the cameras."""
+        return float(np.mean([v.scores.flip.value for v in self.views])) if self.views else None
+
+    @property
+    def relmse(self) -> float | None:
+        """Mean over the cameras, the reference's noise removed."""
+        return float(np.mean([v.scores.relmse_noise_free for v in self.views])) if self.views else None
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Everything that was found.
+
+    Attributes:
+        scene: With the field's lights left out of it live.
+        cameras, references: What pictures were compared with.
+        rivals: The field first.
+        queries_per_second: Of the field, on this machine.
+    """
+
+    scene: Scene
+    field: Field
+    cameras: tuple[Camera, ...]
+    references: tuple[Reference, ...]
+    rivals: tuple[Judged, ...]
+    queries_per_second: float
+
+
+def run_eval(job: EvalJob, progress: Progress) -> dict[str, Any]:
+    """Evaluates, writes everything to ``job.out`` and returns the content of ``eval.json``.
+
+    Raises:
+        InputError: A file or an option is wrong.
+    """
+    from irradia.bake.datasets.setting import in_quantity
+    from irradia.cli.bake_job import open_scene
+    from irradia.cli.eval_files import write_evaluation_files
+    from irradia.cli.staging import staged_folder
+    from irradia.field.files import load_field
+    from irradia.transport import use_device
+
+    start = time.perf_counter()
+    use_device(job.device, job.threads)
+    with staged_folder(job.out, stale=STALE) as folder:
+        field = load_field(job.weights)
+        scene = open_scene(job.scene, job.load, job.light, progress, overrides=job.overrides, ies=job.ies)
+        _check_box(field, scene)
+        found = evaluate(job, in_quantity(scene, field.frame.quantity), field, progress)
+        return write_evaluation_files(folder, job, found, progress, start)
+
+
+def evaluate(job: EvalJob, scene: Scene, field: Field, progress: Progress) -> Evaluation:
+    """Judges a field and its rivals.
+
+    Args:
+        job: What is asked for; files aside.
+        scene: From :func:`irradia.bake.datasets.setting.in_quantity`.
+        field: What is judged.
+        progress: Shows stages.
+    """
+    from irradia.cli.eval_space import space_samples
+    from irradia.field.backends import backend
+    from irradia.field.evaluation import queries_per_second
+
+    cameras = _cameras(scene, job.pictures)
+    references = tuple(_reference(job, scene, camera, progress) for camera in cameras)
+    samples = space_samples(job, scene, field, progress)
+    n_bytes = job.weights.stat().st_size
+    shown = [Baseline("neural field", n_bytes, field.irradiance), *_baselines(job, scene, n_bytes, progress)]
+    rivals = tuple(_judge(job, scene, each, cameras, references, samples, progress) for each in shown)
+    with progress.stage("queries"):
+        evaluator = backend(field.backend_name, field.spec).evaluator(field.spec, field.parameters)
+        speed = queries_per_second(evaluator, directional=field.spec.mode == "irradiance")
+    return Evaluation(scene, field, cameras, references, rivals, speed)
+
+
+def _judge(
+    job: EvalJob,
+    scene: Scene,
+    rival: Baseline,
+    cameras: Sequence[Camera],
+    references: Sequence[Reference],
+    samples: SpaceSamples | None,
+    progress: Progress,
+) -> Judged:
+    from irradia.field.evaluation import leak_ratio, score_in_space, score_picture
+
+    views = []
+    for camera, reference in zip(cameras, references, strict=True):
+        picture = _picture(job, scene, rival, camera, progress)
+        views.append(View(picture, score_picture(picture, reference.first, reference.second)))
+    if samples is None or rival.irradiance is None:
+        return Judged(rival.name, rival.n_bytes, tuple(views))
+    with progress.stage(f"{rival.name} in space"):
+        values = rival.irradiance(samples.positions, samples.normals)
+    evenly = samples.evenly
+    space = score_in_space(values[evenly], samples.irradiance[evenly], samples.variance[evenly])
+    leaks = leak_ratio(values, samples.irradiance, samples.variance, samples.distance_m)
+    return Judged(rival.name, rival.n_bytes, tuple(views), space, leaks)
+
+
+def _picture(job: EvalJob, scene: Scene, rival: Baseline, camera: Camera, progress: Progress) -> F32:
+    from irradia.transport.gbuffer import picture_under
+    from irradia.transport.render import render
+
+    options = _render_options(job, camera, job.pictures.spp, "picture")
+    if rival.irradiance is None:
+        return render(scene, camera, options, lightmap=rival.lightmap, progress=progress)
+    return picture_under(scene, camera, options, rival.irradiance, progress, name=rival.name)
+
+
+def _reference(job: EvalJob, scene: Scene, camera: Camera, progress: Progress) -> Reference:
+    from irradia.cli.eval_reference import render_reference
+
+    options = _render_options(job, camera, job.pictures.reference_spp, "reference")
+    return render_reference(scene, camera, options, progress)
+
+
+def _render_options(job: EvalJob, camera: Camera, spp: int, stream: str) -> RenderOptions:
+    from irradia.cli.bake_views import picture_size
+    from irradia.transport.render import RenderOptions
+
+    width, height = picture_size(camera.aspect, job.pictures.n_pixels)
+    return RenderOptions(width, height, spp, seed=Seed(job.seed).child(stream).uint32())
+
+
+def _cameras(scene: Scene, options: PictureOptions) -> tuple[Camera, ...]:
+    """Those asked for, else all of the scene's, else one that frames it."""
+    from irradia.scene.framing import camera_from_spec
+
+    if options.cameras:
+        return tuple(camera_from_spec(scene, spec) for spec in options.cameras)
+    return scene.cameras or (camera_from_spec(scene, "auto"),)
+
+
+def _baselines(job: EvalJob, scene: Scene, n_bytes: int, progress: Progress) -> list[Baseline]:
+    from irradia.cli.eval_baselines import sh_grid, sighted_grid, small_lightmap
+
+    make: dict[str, Callable[[], Baseline]] = {
+        "sh1": lambda: sh_grid(scene, 1, n_bytes, progress, job.seed),
+        "sh2": lambda: sh_grid(scene, 2, n_bytes, progress, job.seed),
+        "visibility": lambda: sighted_grid(scene, n_bytes, progress, job.seed),
+        "lightmap": lambda: small_lightmap(scene, n_bytes, progress, job.seed),
+    }
+    return [make[name]() for name in job.baselines]
+
+
+def _check_box(field: Field, scene: Scene) -> None:
+    """Refuses a field of somewhere else.
+
+    Raises:
+        InputError: The field's box and the scene's don't meet.
+    """
+    from irradia.scene.merge import merge
+
+    positions = merge(scene).positions
+    low, high = field.frame.aabb
+    if (positions.max(axis=0) < low).any() or (positions.min(axis=0) > high).any():
+        raise InputError(
+            "this field was trained for another scene: their boxes don't meet",
+            where="--scene",
+            fix="Give the scene that its samples were drawn from.",
+        )

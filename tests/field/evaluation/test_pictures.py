@@ -1,0 +1,57 @@
+"""Scores of pictures, and what of them is the reference's noise."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from irradia.field.evaluation import score_picture
+
+SHAPE = (48, 64, 3)
+
+
+def _truth() -> np.ndarray:
+    rows, columns = np.indices(SHAPE[:2])
+    return np.repeat((0.4 + 0.3 * np.sin(rows / 7) * np.cos(columns / 9))[..., None], 3, 2).astype(np.float32)
+
+
+def _halves(noise: float, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    rng = np.random.default_rng(seed)
+    first, second = (_truth() + rng.normal(0.0, noise, SHAPE).astype(np.float32) for _ in range(2))
+    return first, second
+
+
+def test_of_the_truth_only_noise_is_seen_and_the_flags_say_so():
+    scores = score_picture(_truth(), *_halves(0.05))
+    for name in ("relmse", "psnr_db", "p95"):
+        figure = getattr(scores, name)
+        assert figure.value == pytest.approx(figure.noise, rel=0.1), name
+    assert scores.mean_ratio.is_noise
+    assert abs(scores.relmse_noise_free) < 0.1 * scores.relmse.value
+
+
+def test_a_real_error_stands_out_from_the_noise():
+    scores = score_picture(1.2 * _truth(), *_halves(0.005))
+    assert not any(figure.is_noise for figure in scores.figures.values())
+    assert scores.mean_ratio.value == pytest.approx(1.2, rel=1e-3)
+    assert scores.p95.value > 0.15
+
+
+def test_an_error_smaller_than_the_noise_is_flagged():
+    scores = score_picture(0.5 * sum(_halves(0.05)), *_halves(0.05))
+    assert scores.flip.is_noise
+    assert scores.relmse.is_noise
+    assert scores.psnr_db.is_noise
+
+
+def test_noise_of_the_ratio_is_the_standard_error_of_the_mean():
+    errors = [score_picture(_truth(), *_halves(0.05, seed)).mean_ratio for seed in range(20)]
+    spread = np.std([figure.value for figure in errors])
+    assert np.mean([figure.noise for figure in errors]) == pytest.approx(spread, rel=0.5)
+
+
+def test_the_error_map_has_the_mean_that_is_told():
+    scores = score_picture(1.2 * _truth(), *_halves(0.005))
+    assert scores.error.shape == SHAPE[:2]
+    assert scores.error.mean(dtype=np.float64) == pytest.approx(scores.flip.value, rel=1e-6)
+    assert scores.to_json()["flip"]["value"] == scores.flip.value
