@@ -1,0 +1,150 @@
+"""What a stopped training needs to go on, in one file.
+
+An uncompressed ``.npz``: its CRCs find damage, and nothing in it is pickled. Going on from a checkpoint
+gives the same bytes as never having stopped.
+"""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from irradia.core.errors import InputError
+from irradia.core.files import write_atomic
+from irradia.field.backend import Parameters, TrainState
+
+VERSION = 1
+_GROWS = ("data.rows", "data.sha256")
+_GROUPS = ("parameters", "average", "first", "second")
+
+
+@dataclass(frozen=True)
+class Course:
+    """Where a training stands, apart from the weights.
+
+    Attributes:
+        spent_s: Seconds of training.
+        rate_factor: What setbacks have left of the learning rates.
+        n_setbacks: So many have there been.
+        best_relmse: Of all validations.
+        n_worse: Validations since that one.
+        losses: Of the last steps.
+    """
+
+    spent_s: float = 0.0
+    rate_factor: float = 1.0
+    n_setbacks: int = 0
+    best_relmse: float = float("inf")
+    n_worse: int = 0
+    losses: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Checkpoint:
+    """A training between two steps.
+
+    Attributes:
+        state: Weights, moments and means.
+        course: The rest.
+        best: Parameters for inference at the best validation; empty where training never ends early.
+        identity: Spec, options and data, as plain values; must be the same for it to go on.
+        scale: Of the frame, which a growing dataset would give anew.
+    """
+
+    state: TrainState
+    course: Course
+    best: Parameters
+    identity: dict[str, Any]
+    scale: float
+
+
+def save_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
+    """Writes one, whole or not at all.
+
+    Raises:
+        OSError: It can't be written.
+    """
+    header = {
+        "version": VERSION,
+        "step": checkpoint.state.step,
+        "course": asdict(checkpoint.course),
+        "identity": checkpoint.identity,
+        "scale": checkpoint.scale,
+    }
+    arrays = {
+        f"{group}/{name}": array
+        for group in _GROUPS
+        for name, array in getattr(checkpoint.state, group).items()
+    }
+    arrays |= {f"best/{name}": array for name, array in checkpoint.best.items()}
+    text = np.frombuffer(json.dumps(header).encode(), np.uint8)
+    with write_atomic(path) as stream:
+        np.savez(stream, header=text, allow_pickle=False, **arrays)
+
+
+def load_checkpoint(path: Path) -> Checkpoint:
+    """Reads one.
+
+    Raises:
+        InputError: It is absent, damaged, or of another version.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as stored:
+            header = json.loads(stored["header"].tobytes())
+            arrays = {name: stored[name] for name in stored.files if name != "header"}
+        if header["version"] != VERSION:
+            raise InputError(f"expected version {VERSION}, found {header['version']}", where=str(path))
+        state = TrainState(*(_group(arrays, group) for group in _GROUPS), step=header["step"])
+        course = Course(**{**header["course"], "losses": tuple(header["course"]["losses"])})
+        return Checkpoint(state, course, _group(arrays, "best"), header["identity"], header["scale"])
+    except FileNotFoundError as error:
+        raise InputError(
+            "there is no stopped training here", where=str(path), fix="Train without --resume."
+        ) from error
+    except (ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
+        raise InputError(
+            f"this checkpoint is damaged: {error}", where=str(path), fix="Train without --resume."
+        ) from error
+
+
+def check_same(checkpoint: Checkpoint, identity: dict[str, Any], where: Path | str) -> None:
+    """Refuses to go on with another training.
+
+    Raises:
+        InputError: Names what differs.
+    """
+    before, now = _flat(checkpoint.identity), _flat(json.loads(json.dumps(identity)))
+    growing = before.get("data.rows") is None  # what has come since is welcome
+    differ = sorted(
+        name
+        for name in before.keys() | now.keys()
+        if before.get(name) != now.get(name) and not (growing and name in _GROWS)
+    )
+    if differ:
+        name = differ[0]
+        raise InputError(
+            f"the stopped training has another {name}: {before.get(name)}, now {now.get(name)}",
+            where=str(where),
+            fix="Give the same options and samples, or train without --resume.",
+        )
+
+
+def _group(arrays: dict[str, Any], group: str) -> Parameters:
+    prefix = f"{group}/"
+    return {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}
+
+
+def _flat(value: Any, path: str = "") -> dict[str, Any]:
+    """Leaves by dotted name."""
+    if not isinstance(value, dict):
+        return {path: value}
+    return {
+        name: leaf
+        for key, each in value.items()
+        for name, leaf in _flat(each, f"{path}.{key}" if path else key).items()
+    }

@@ -1,0 +1,176 @@
+"""Displaced copies of samples, which tell a field that light changes little from here to nearby.
+
+A copy must not come to lie behind a wall. Samples on surfaces know the surfaces around them: every sample
+stands for a disc across its normal (a surfel; Pfister et al. 2000), and a copy counts only if
+
+1. no disc lies between the sample and its copy, and
+2. the sample nearest to the copy faces the same way and its plane runs through the copy.
+
+Copies stay in the sample's own tangent plane and within half the distance of its 24th neighbour, so that
+all discs that could be in the way are known; beyond that there are other samples anyway. Discs have that
+radius too, wider than the gaps between samples: near door posts a few copies are lost for nothing.
+
+Samples in space say nothing of surfaces, so for them a test by rays has to be given, which may also
+replace the first rule for samples on surfaces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irradia.core.rng import Seed
+from irradia.field.backend import F32
+from irradia.field.training.events import Working
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
+
+# Rows of a chunk and a random stream → places (n, 3) for their copies, and (n,) whether they are good.
+_Trial = Callable[[NDArray[np.int64], np.random.Generator], tuple[F32, NDArray[np.bool_]]]
+# (n, 3) and (n, 3) points in metres → (n,) whether each pair sees each other.
+Visibility = Callable[[F32, F32], NDArray[np.bool_]]
+
+N_NEIGHBOURS = 24
+_CHUNK_ROWS = 1 << 13
+_TRIES = 4
+_SAME_FACING = 0.9  # cosine
+_OFF_PLANE = 0.1  # of the disc's radius
+
+
+@dataclass(frozen=True)
+class _Surfels:
+    """The surroundings of n samples.
+
+    Attributes:
+        centre, normal: (n, k, 3) of their neighbours.
+        radius: (n,) of the discs, and how far copies may go.
+    """
+
+    centre: F32
+    normal: F32
+    radius: F32
+
+    def of(self, row: NDArray[np.int64]) -> _Surfels:
+        """Those of some of the samples."""
+        return _Surfels(self.centre[row], self.normal[row], self.radius[row])
+
+
+def jittered_on_surfaces(
+    positions: F32, normals: F32, copies: int, radius_m: float, seed: Seed, visible: Visibility | None = None
+) -> Generator[Working, None, tuple[NDArray[np.int64], F32]]:
+    """Copies of samples on surfaces.
+
+    Args:
+        positions: (N, 3) metres.
+        normals: (N, 3) unit.
+        copies: Of each sample; fewer where no place is found in four tries.
+        radius_m: At most so far, uniform over the disc.
+        seed: Of the places.
+        visible: Test by rays; by default the samples' own discs are asked.
+
+    Yields:
+        Progress.
+
+    Returns:
+        (M,) number of the sample and (M, 3) position of each copy.
+    """
+    from scipy.spatial import cKDTree
+
+    tree = cKDTree(positions)
+
+    def trial(chunk: slice) -> _Trial:
+        start, normal = positions[chunk], normals[chunk]
+        around = _surfels(tree, start, positions, normals)
+        reach = np.minimum(np.float32(radius_m), around.radius)
+
+        def attempt(row: NDArray[np.int64], rng: np.random.Generator) -> tuple[F32, NDArray[np.bool_]]:
+            place = start[row] + _tangent_offsets(normal[row], reach[row], rng)
+            clear = _clear if visible is None else lambda start, end, _: visible(start, end)
+            near = around.of(row)
+            return place, _on_its_surface(place, normal[row], near) & clear(start[row], place, near)
+
+        return attempt
+
+    return (yield from _copied(len(positions), copies, seed, trial))
+
+
+def jittered_in_space(
+    positions: F32, copies: int, radius_m: float, seed: Seed, visible: Visibility
+) -> Generator[Working, None, tuple[NDArray[np.int64], F32]]:
+    """Copies of samples in free space, within a ball; see :func:`jittered_on_surfaces`."""
+
+    def trial(chunk: slice) -> _Trial:
+        start = positions[chunk]
+
+        def attempt(row: NDArray[np.int64], rng: np.random.Generator) -> tuple[F32, NDArray[np.bool_]]:
+            place = start[row] + np.float32(radius_m) * _in_unit_ball(len(row), rng)
+            return place, visible(start[row], place)
+
+        return attempt
+
+    return (yield from _copied(len(positions), copies, seed, trial))
+
+
+def _copied(
+    n: int, copies: int, seed: Seed, trial: Callable[[slice], _Trial]
+) -> Generator[Working, None, tuple[NDArray[np.int64], F32]]:
+    """Tries places for copies of n samples; each chunk has its own random stream."""
+    source, position = [np.zeros(0, np.int64)], [np.zeros((0, 3), np.float32)]
+    for first in range(0, n, _CHUNK_ROWS):
+        yield Working("Jitter samples", first, n, "rows")
+        chunk = slice(first, min(first + _CHUNK_ROWS, n))
+        attempt, rng = trial(chunk), seed.child(f"rows-{first}").numpy()
+        left = np.repeat(np.arange(chunk.stop - first), copies)
+        for _ in range(_TRIES):
+            place, good = attempt(left, rng)
+            source.append(first + left[good])
+            position.append(place[good])
+            left = left[~good]
+    return np.concatenate(source), np.concatenate(position)
+
+
+def _surfels(tree: cKDTree, at: F32, positions: F32, normals: F32) -> _Surfels:
+    k = min(N_NEIGHBOURS + 1, len(positions))
+    distance, index = tree.query(at, k, workers=-1)
+    index = np.reshape(index, (len(at), k))
+    radius = 0.5 * np.reshape(distance, (len(at), k))[:, -1].astype(np.float32)
+    return _Surfels(positions[index], normals[index], radius)
+
+
+def _clear(start: F32, end: F32, around: _Surfels) -> NDArray[np.bool_]:
+    """Whether no disc lies between the points of each pair."""
+    above = np.einsum("nkc,nkc->nk", start[:, None] - around.centre, around.normal)
+    below = np.einsum("nkc,nkc->nk", end[:, None] - around.centre, around.normal)
+    steep = np.maximum(np.abs(above), np.abs(below)) > 1e-4 * around.radius[:, None]  # not along the plane
+    share = above / np.where(above == below, 1.0, above - below)
+    met = start[:, None] + share[..., None] * (end - start)[:, None]
+    within = np.linalg.norm(met - around.centre, axis=-1) <= around.radius[:, None]
+    return ~np.any(steep & (above * below <= 0.0) & within, axis=1)
+
+
+def _on_its_surface(place: F32, normal: F32, around: _Surfels) -> NDArray[np.bool_]:
+    """Whether the sample nearest to each place faces as its own does, with the place in its plane."""
+    row = np.arange(len(place))
+    nearest = np.argmin(np.linalg.norm(place[:, None] - around.centre, axis=-1), axis=1)
+    centre, facing = around.centre[row, nearest], around.normal[row, nearest]
+    off_plane = np.abs(np.einsum("nc,nc->n", place - centre, facing))
+    return (np.einsum("nc,nc->n", normal, facing) >= _SAME_FACING) & (off_plane <= _OFF_PLANE * around.radius)
+
+
+def _tangent_offsets(normals: F32, reach: F32, rng: np.random.Generator) -> F32:
+    """(n, 3) uniform over discs of those radii (n,) across the normals."""
+    offset = rng.standard_normal(normals.shape, np.float32)
+    offset -= np.einsum("nc,nc->n", offset, normals)[:, None] * normals
+    length = np.maximum(np.linalg.norm(offset, axis=1), np.float32(1e-12))
+    return offset * (reach * np.sqrt(rng.random(len(normals), np.float32)) / length)[:, None]
+
+
+def _in_unit_ball(n: int, rng: np.random.Generator) -> F32:
+    direction = rng.standard_normal((n, 3), np.float32)
+    length = np.maximum(np.linalg.norm(direction, axis=1), np.float32(1e-12))
+    return direction * (np.cbrt(rng.random(n, np.float32)) / length)[:, None]
