@@ -17,12 +17,13 @@ from irradia.core.colour import automatic_exposure_ev, picture_srgb8
 from irradia.core.files import write_text_atomic
 from irradia.core.progress import Progress
 from irradia.field.cost import query_cost
+from irradia.field.native_fields import StoredField
 from irradia.field.registry import spec_to_dict
 from irradia.report import Comparison, EvaluationData, FieldSummary, Rival, text, write_evaluation
 from irradia.report.pictures import error_colours
 from irradia.scene.types import Camera
 
-F16_BITS = 16
+_PLAIN_BITS = {"fp16": 16, "fp32": 32}
 SCORES = {"flip": "flip", "psnr": "psnr_db", "relmse": "relmse", "mean_ratio": "mean_ratio", "p95": "p95"}
 
 
@@ -55,7 +56,7 @@ def evaluation_record(job: EvalJob, found: Evaluation, progress: Progress, wall_
     """Everything as plain values."""
     from irradia.transport.backend import device
 
-    field, cost = found.field, query_cost(found.field.spec)
+    field, cost = found.stored.field, query_cost(found.stored.field.spec)
     origin = provenance.record(
         "eval",
         job.config(),
@@ -79,8 +80,8 @@ def evaluation_record(job: EvalJob, found: Evaluation, progress: Progress, wall_
         "query": {
             "million_per_second": found.queries_per_second / 1e6,
             "flops": cost.flops,
-            "encoding_bytes": cost.encoding_bytes(F16_BITS),
-            "network_bytes": cost.network_values * F16_BITS / 8,
+            "encoding_bytes": cost.encoding_bytes(encoding_bits(found.stored)),
+            "network_bytes": cost.network_values * _PLAIN_BITS[found.stored.precision] / 8,
         },
         "stage_s": {name: round(seconds, 4) for name, seconds in progress.seconds.items()},
         "peak_memory_bytes": peak_memory_bytes(),
@@ -113,8 +114,15 @@ def exposure_of(job: EvalJob, found: Evaluation, number: int) -> float:
     return automatic_exposure_ev(found.references[number].mean) if chosen is None else chosen
 
 
+def encoding_bits(stored: StoredField) -> int:
+    """Of a value of the encoding, the widest where they differ."""
+    if stored.tensors:
+        return max(tensor.bits for tensor in stored.tensors.values())
+    return _PLAIN_BITS[stored.precision]
+
+
 def _facts(found: Evaluation) -> tuple[tuple[str, str], ...]:
-    field, judged = found.field, found.rivals[0]
+    field, judged = found.stored.field, found.rivals[0]
     cost = query_cost(field.spec)
     facts = [
         ("Encoding", field.spec.position.name),
@@ -124,7 +132,7 @@ def _facts(found: Evaluation) -> tuple[tuple[str, str], ...]:
         ("Light", field.frame.quantity),
         ("Queries here", text.rate(found.queries_per_second, "queries/s")),
         ("Operations a query", text.count(cost.flops)),
-        ("Bytes touched a query, encoding", text.count(cost.encoding_bytes(F16_BITS))),
+        ("Bytes touched a query, encoding", text.count(cost.encoding_bytes(encoding_bits(found.stored)))),
     ]
     if judged.leaks is not None:
         ratio = judged.leaks.ratio

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from irradia.cli.eval_space import SpaceSamples
     from irradia.field.evaluation import LeakRatio, PictureScores, SpaceScores
     from irradia.field.field import Field
+    from irradia.field.native_fields import StoredField
     from irradia.transport.render import RenderOptions
 
 F32 = NDArray[np.float32]
@@ -73,14 +74,15 @@ class Evaluation:
     """Everything that was found.
 
     Attributes:
-        scene: With the field's lights left out of it live.
+        scene: The lights that the field leaves out are live in it.
+        stored: The field as its file holds it.
         cameras, references: What pictures were compared with.
         rivals: The field first.
         queries_per_second: Of the field, on this machine.
     """
 
     scene: Scene
-    field: Field
+    stored: StoredField
     cameras: tuple[Camera, ...]
     references: tuple[Reference, ...]
     rivals: tuple[Judged, ...]
@@ -97,42 +99,43 @@ def run_eval(job: EvalJob, progress: Progress) -> dict[str, Any]:
     from irradia.cli.bake_job import open_scene
     from irradia.cli.eval_files import write_evaluation_files
     from irradia.cli.staging import staged_folder
-    from irradia.field.files import load_field
+    from irradia.field.files import read_field
     from irradia.transport import use_device
 
     start = time.perf_counter()
     use_device(job.device, job.threads)
     with staged_folder(job.out, stale=STALE) as folder:
-        field = load_field(job.weights)
+        stored = read_field(job.weights)
         scene = open_scene(job.scene, job.load, job.light, progress, overrides=job.overrides, ies=job.ies)
-        _check_box(field, scene)
-        found = evaluate(job, in_quantity(scene, field.frame.quantity), field, progress)
+        _check_box(stored.field, scene)
+        scene = in_quantity(scene, stored.field.frame.quantity)
+        found = evaluate(job, scene, stored, progress)
         return write_evaluation_files(folder, job, found, progress, start)
 
 
-def evaluate(job: EvalJob, scene: Scene, field: Field, progress: Progress) -> Evaluation:
+def evaluate(job: EvalJob, scene: Scene, stored: StoredField, progress: Progress) -> Evaluation:
     """Judges a field and its rivals.
 
     Args:
         job: What is asked for; files aside.
         scene: From :func:`irradia.bake.datasets.setting.in_quantity`.
-        field: What is judged.
+        stored: The field that is judged, and its size.
         progress: Shows stages.
     """
     from irradia.cli.eval_space import space_samples
     from irradia.field.backends import backend
     from irradia.field.evaluation import queries_per_second
 
+    field, n_bytes = stored.field, stored.n_bytes
     cameras = _cameras(scene, job.pictures)
     references = tuple(_reference(job, scene, camera, progress) for camera in cameras)
     samples = space_samples(job, scene, field, progress)
-    n_bytes = job.weights.stat().st_size
     shown = [Baseline("neural field", n_bytes, field.irradiance), *_baselines(job, scene, n_bytes, progress)]
     rivals = tuple(_judge(job, scene, each, cameras, references, samples, progress) for each in shown)
     with progress.stage("queries"):
         evaluator = backend(field.backend_name, field.spec).evaluator(field.spec, field.parameters)
         speed = queries_per_second(evaluator, directional=field.spec.mode == "irradiance")
-    return Evaluation(scene, field, cameras, references, rivals, speed)
+    return Evaluation(scene, stored, cameras, references, rivals, speed)
 
 
 def _judge(
