@@ -1,0 +1,118 @@
+"""Fields to the Unity project's ``.bin``, by the conventions of docs/field-files.md and no others."""
+
+from __future__ import annotations
+
+import math
+from typing import Never
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irradia.core.errors import InputError
+from irradia.field.bin_reader import CHANNEL_FROM_OURS
+from irradia.field.encodings import Frequency, HashGrid, Identity, TriPlane
+from irradia.field.field import Field
+from irradia.field.tensors import to_halves
+from irradia.formats.field_bin import FREQUENCY, HASH, TRI_PLANE, BinHeader, encode_field_bin, padded
+
+F32 = NDArray[np.float32]
+
+_PLAIN_GRID = "a hash grid by tiny-cuda-nn's conventions"
+
+
+def encode_bin(field: Field) -> bytes:
+    """The bytes of a ``.bin``.
+
+    The file knows neither scale nor activation. So the scale goes into the last layer, exactly where the head
+    is linear, and to the precision of a half float where it is ``exp``.
+
+    Raises:
+        InputError: The field has an encoding, activation, head or mode that the file can't express.
+    """
+    _check(field)
+    header, encoding = _encoding(field)
+    network = np.concatenate([part for layer in _layers(field) for part in layer])
+    return encode_field_bin(header, to_halves(encoding, "position"), to_halves(network, "mlp"))
+
+
+def _check(field: Field) -> None:
+    spec = field.spec
+    if spec.activation != "relu":
+        _refuse(f"the activation {spec.activation}", "relu")
+    if spec.mode == "sh2":
+        _refuse("coefficients of L2", "mode sh1 or irradiance")
+    if spec.mode == "irradiance" and spec.head != "exp":
+        _refuse(f"the head {spec.head}", "exp")
+    if not isinstance(spec.direction, Identity | None):
+        _refuse(f"the {spec.direction.name} encoding of normals", "identity")
+
+
+def _refuse(what: str, instead: str) -> Never:
+    raise InputError(
+        f"a .bin can't hold {what}", fix=f"Train with {instead}, or save the field as .safetensors."
+    )
+
+
+def _encoding(field: Field) -> tuple[BinHeader, F32]:
+    """The header, and tables or planes."""
+    position, spec = field.spec.position, field.spec
+    values = field.parameters.get("position", np.zeros(0, np.float32))
+    resolutions = (0.0, 0.0)
+    match position:
+        case HashGrid():
+            plain = HashGrid(
+                position.n_levels,
+                position.log2_table_size,
+                position.n_features,
+                position.base_resolution,
+                position.max_resolution,
+                position.full_levels,
+            )
+            if position != plain:
+                _refuse("a hash grid of rarer conventions", _PLAIN_GRID)
+            kind, sizes = HASH, (position.n_levels, 1 << position.log2_table_size, position.n_features)
+            resolutions = (float(position.base_resolution), float(position.max_resolution))
+            values = _full_levels(position, values)
+        case TriPlane():
+            if position.align_corners:
+                _refuse("planes whose corners are aligned", "align_corners off")
+            kind, sizes = TRI_PLANE, (position.resolution, 0, position.n_features)
+        case Frequency():
+            kind, sizes = FREQUENCY, (position.n_frequencies, 0, int(position.include_identity))
+        case _:
+            _refuse(f"the encoding {position.name}", "hash, triplane or frequency")
+    return (
+        BinHeader(kind, *sizes, resolutions, padded(spec.width), spec.n_hidden_layers, field.frame.aabb),
+        values,
+    )
+
+
+def _full_levels(grid: HashGrid, values: F32) -> F32:
+    """Tables of 2^N entries each; what a level has fewer of is repeated, so that indices that wrap agree."""
+    table = values.reshape(-1, grid.n_features)
+    entries = np.arange(1 << grid.log2_table_size)
+    return np.concatenate(
+        [table[level.first + entries % level.n_entries] for level in grid.levels()]
+    ).reshape(-1)
+
+
+def _layers(field: Field) -> list[tuple[F32, F32]]:
+    """Each matrix, flat by rows of outputs, and its bias; padded with zeros."""
+    n_layers = field.spec.n_hidden_layers + 1
+    layers = [
+        (field.parameters[f"mlp.{i}.weight"], field.parameters[f"mlp.{i}.bias"]) for i in range(n_layers)
+    ]
+    weight, bias = layers[-1]
+    scale = np.float32(field.frame.scale)
+    if field.spec.mode == "irradiance":
+        layers[-1] = weight, bias + np.float32(math.log(field.frame.scale))
+    else:
+        layers[-1] = scale * weight[CHANNEL_FROM_OURS], scale * bias[CHANNEL_FROM_OURS]
+    n_outputs = 4 if field.spec.mode == "irradiance" else 16
+    found: list[tuple[F32, F32]] = []
+    for i, (weight, bias) in enumerate(layers):
+        rows = n_outputs if i == n_layers - 1 else padded(len(bias))
+        missing = rows - len(bias)
+        whole = np.pad(weight, ((0, missing), (0, padded(weight.shape[1]) - weight.shape[1])))
+        found.append((whole.reshape(-1), np.pad(bias, (0, missing))))
+    return found
