@@ -1,0 +1,142 @@
+"""``irradia eval``: a field of known light in a furnace, where every answer is known."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from irradia.cli import app
+from irradia.core.rng import Seed
+from irradia.field.encodings import Identity
+from irradia.field.field import Field
+from irradia.field.files import save_field
+from irradia.field.init import new_parameters
+from irradia.field.spec import FieldFrame, FieldSpec
+
+REFLECTANCE = 0.5
+FURNACE = "builtin:furnace"
+E = math.pi / (1.0 - REFLECTANCE)
+SMALL = ["--pixels", "1024", "--reference-spp", "64", "--spp", "4", "--points", "256", "--rays", "64"]
+BOX = np.float32([[-2, -1.5, -2.5], [2, 1.5, 2.5]])
+
+
+def _write_field(path, light: float = E, box: np.ndarray = BOX, quantity="full"):
+    """A field that says the same everywhere."""
+    spec = FieldSpec(Identity(), Identity(), width=4, n_hidden_layers=1)
+    parameters = {name: np.zeros_like(value) for name, value in new_parameters(spec, Seed(0)).items()}
+    parameters["mlp.1.bias"][:] = math.log(light / 4.0)
+    save_field(path, Field(spec, FieldFrame(box, 4.0, quantity), parameters), precision="fp32")
+    return path
+
+
+def _evaluate(weights, out, *more: str) -> int:
+    baselines = () if "--baselines" in more else ("--baselines", "none")
+    return app.run(["eval", str(weights), "--scene", FURNACE, "-o", str(out), *SMALL, *baselines, *more])
+
+
+@pytest.fixture(scope="module")
+def exact(tmp_path_factory):
+    """The folder of an evaluation of the exact field."""
+    folder = tmp_path_factory.mktemp("eval")
+    assert _evaluate(_write_field(folder / "field.safetensors"), folder / "out") == 0
+    return folder / "out"
+
+
+def _record(out) -> dict:
+    return json.loads((out / "eval.json").read_text())
+
+
+def test_an_exact_field_shows_no_more_than_noise(exact):
+    judged = _record(exact)["rivals"][0]
+    (view,) = judged["views"]
+    assert view["mean_ratio"]["value"] == pytest.approx(1.0, abs=2e-3)
+    assert abs(view["relmse_noise_free"]) < 1e-4
+    assert view["flip"]["value"] < 0.02
+    assert judged["space"]["mse_noise_free"] < 1e-3 * E**2
+
+
+def test_a_field_that_is_too_bright_is_so_by_the_share_of_its_light(tmp_path):
+    assert _evaluate(_write_field(tmp_path / "f.safetensors", 1.2 * E), tmp_path / "out") == 0
+    judged = _record(tmp_path / "out")["rivals"][0]
+    truth = 1.0 / (1.0 - REFLECTANCE)
+    assert judged["views"][0]["mean_ratio"]["value"] == pytest.approx(
+        (1.0 + 1.2 * REFLECTANCE * truth) / truth, rel=5e-3
+    )
+    assert not judged["views"][0]["mean_ratio"]["is_noise"]
+    assert judged["space"]["mse_noise_free"] == pytest.approx((0.2 * E) ** 2, rel=0.05)
+    assert judged["leaks"]["ratio"] == pytest.approx(1.0, rel=0.05)
+
+
+def test_everything_is_there_to_look_at(exact):
+    names = {path.name for path in exact.iterdir()}
+    assert {"eval.html", "eval.json", "view0.field.png", "view0.reference.png", "error0.field.png"} == names
+    assert "Neural field" in (exact / "eval.html").read_text(encoding="utf-8")
+
+
+def test_the_record_says_what_the_field_is_and_costs(exact):
+    record, weights = _record(exact), exact.parent / "field.safetensors"
+    assert record["field"]["n_bytes"] == weights.stat().st_size
+    assert record["field"]["spec"]["position"]["type"] == "identity"
+    assert record["query"]["million_per_second"] > 0.01
+    assert record["query"]["flops"] == 2 * (6 * 4 + 4 * 3) + 4 + 3 + 4
+    assert record["provenance"]["command"] == "eval"
+
+
+def test_references_are_rendered_once(exact, tmp_path, monkeypatch):
+    from irradia.cli import eval_reference, eval_space
+
+    def refuse(*_):
+        raise AssertionError("this was in the cache")
+
+    monkeypatch.setattr(eval_reference, "_half", refuse)
+    monkeypatch.setattr(eval_space, "_draw", refuse)
+    assert _evaluate(exact.parent / "field.safetensors", tmp_path / "out") == 0
+    assert _record(tmp_path / "out")["rivals"] == _record(exact)["rivals"]
+
+
+def test_rivals_have_the_size_of_the_field_and_the_light_of_the_furnace(tmp_path):
+    weights = _write_field(tmp_path / "f.safetensors")
+    assert _evaluate(weights, tmp_path / "out", "--baselines", "sh1,sh2,visibility,lightmap") == 0
+    field, *rivals = _record(tmp_path / "out")["rivals"]
+    assert len(rivals) == 4
+    for rival in rivals:
+        assert rival["n_bytes"] < 1.2 * field["n_bytes"], rival["name"]
+        assert rival["views"][0]["mean_ratio"]["value"] == pytest.approx(1.0, abs=0.03), rival["name"]
+    for grid in rivals[:3]:
+        assert grid["space"]["mse_noise_free"] < (0.05 * E) ** 2, grid["name"]
+    assert rivals[3]["space"] is None
+
+
+def test_a_dataset_can_take_the_place_of_drawn_points(exact, tmp_path):
+    data = tmp_path / "furnace.samples"
+    arguments = ["--kind", "volume", "--count", "512", "--samples", "32", "--integrator", "path"]
+    assert app.run(["sample", FURNACE, "-o", str(data), *arguments]) == 0
+    assert _evaluate(exact.parent / "field.safetensors", tmp_path / "out", "--samples", str(data)) == 0
+    space = _record(tmp_path / "out")["rivals"][0]["space"]
+    assert space["n_points"] == 512
+    assert space["mean_ratio"] == pytest.approx(1.0, abs=0.02)
+
+
+def test_a_dataset_of_other_light_is_refused(tmp_path, capfd):
+    data = tmp_path / "furnace.samples"
+    arguments = ["--kind", "volume", "--count", "64", "--samples", "4", "--integrator", "path"]
+    assert app.run(["sample", FURNACE, "-o", str(data), *arguments, "--quantity", "indirect"]) == 0
+    assert _evaluate(_write_field(tmp_path / "f.safetensors"), tmp_path / "out", "--samples", str(data)) == 2
+    assert "expected samples of full light" in capfd.readouterr().err
+
+
+def test_a_field_of_another_place_is_refused(tmp_path, capfd):
+    weights = _write_field(tmp_path / "f.safetensors", box=BOX + 100.0)
+    assert _evaluate(weights, tmp_path / "out") == 2
+    assert "another scene" in capfd.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("names", ["sh3", "sh1,", "every"])
+def test_unknown_baselines_are_refused(tmp_path, names, capfd):
+    weights = _write_field(tmp_path / "f.safetensors")
+    assert _evaluate(weights, tmp_path / "out", "--baselines", names) == 2
+    assert "expected all, none or some of" in capfd.readouterr().err
