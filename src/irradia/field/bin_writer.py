@@ -17,8 +17,6 @@ from irradia.formats.field_bin import FREQUENCY, HASH, TRI_PLANE, BinHeader, enc
 
 F32 = NDArray[np.float32]
 
-_PLAIN_GRID = "a hash grid by tiny-cuda-nn's conventions"
-
 
 def encode_bin(field: Field) -> bytes:
     """The bytes of a ``.bin``.
@@ -29,13 +27,19 @@ def encode_bin(field: Field) -> bytes:
     Raises:
         InputError: The field has an encoding, activation, head or mode that the file can't express.
     """
-    _check(field)
-    header, encoding = _encoding(field)
+    check_bin(field)
     network = np.concatenate([part for layer in _layers(field) for part in layer])
-    return encode_field_bin(header, to_halves(encoding, "position"), to_halves(network, "mlp"))
+    return encode_field_bin(
+        _header(field), to_halves(_encoding(field), "position"), to_halves(network, "mlp")
+    )
 
 
-def _check(field: Field) -> None:
+def check_bin(field: Field) -> None:
+    """Refuses a field that a ``.bin`` can't express.
+
+    Raises:
+        InputError: It says what, and what to do instead.
+    """
     spec = field.spec
     if spec.activation != "relu":
         _refuse(f"the activation {spec.activation}", "relu")
@@ -45,6 +49,7 @@ def _check(field: Field) -> None:
         _refuse(f"the head {spec.head}", "exp")
     if not isinstance(spec.direction, Identity | None):
         _refuse(f"the {spec.direction.name} encoding of normals", "identity")
+    _header(field)
 
 
 def _refuse(what: str, instead: str) -> Never:
@@ -53,26 +58,15 @@ def _refuse(what: str, instead: str) -> Never:
     )
 
 
-def _encoding(field: Field) -> tuple[BinHeader, F32]:
-    """The header, and tables or planes."""
+def _header(field: Field) -> BinHeader:
     position, spec = field.spec.position, field.spec
-    values = field.parameters.get("position", np.zeros(0, np.float32))
     resolutions = (0.0, 0.0)
     match position:
         case HashGrid():
-            plain = HashGrid(
-                position.n_levels,
-                position.log2_table_size,
-                position.n_features,
-                position.base_resolution,
-                position.max_resolution,
-                position.full_levels,
-            )
-            if position != plain:
-                _refuse("a hash grid of rarer conventions", _PLAIN_GRID)
+            if position != _plain(position):
+                _refuse("a hash grid of rarer conventions", "a hash grid by tiny-cuda-nn's conventions")
             kind, sizes = HASH, (position.n_levels, 1 << position.log2_table_size, position.n_features)
             resolutions = (float(position.base_resolution), float(position.max_resolution))
-            values = _full_levels(position, values)
         case TriPlane():
             if position.align_corners:
                 _refuse("planes whose corners are aligned", "align_corners off")
@@ -81,10 +75,26 @@ def _encoding(field: Field) -> tuple[BinHeader, F32]:
             kind, sizes = FREQUENCY, (position.n_frequencies, 0, int(position.include_identity))
         case _:
             _refuse(f"the encoding {position.name}", "hash, triplane or frequency")
-    return (
-        BinHeader(kind, *sizes, resolutions, padded(spec.width), spec.n_hidden_layers, field.frame.aabb),
-        values,
+    return BinHeader(kind, *sizes, resolutions, padded(spec.width), spec.n_hidden_layers, field.frame.aabb)
+
+
+def _plain(grid: HashGrid) -> HashGrid:
+    """A grid of the same sizes by the conventions of tiny-cuda-nn."""
+    return HashGrid(
+        grid.n_levels,
+        grid.log2_table_size,
+        grid.n_features,
+        grid.base_resolution,
+        grid.max_resolution,
+        grid.full_levels,
     )
+
+
+def _encoding(field: Field) -> F32:
+    """Tables or planes."""
+    values = field.parameters.get("position", np.zeros(0, np.float32))
+    position = field.spec.position
+    return _full_levels(position, values) if isinstance(position, HashGrid) else values
 
 
 def _full_levels(grid: HashGrid, values: F32) -> F32:

@@ -17,7 +17,7 @@ from irradia.core.errors import InputError
 from irradia.core.files import write_atomic
 from irradia.field.bin_conventions import BinConventions
 from irradia.field.bin_reader import decode_bin
-from irradia.field.bin_writer import encode_bin
+from irradia.field.bin_writer import check_bin, encode_bin
 from irradia.field.field import Field
 from irradia.field.native_fields import Precision, StoredField, decode_field, encode_field
 from irradia.field.quantised import QuantisedField
@@ -54,6 +54,20 @@ def save_field(
     with write_atomic(path) as stream:
         stream.write(data)
     return len(data)
+
+
+def check_format(path: Path | str, made: Field) -> None:
+    """Refuses early what :func:`save_field` would refuse.
+
+    Args:
+        path: Where a field is to be written.
+        made: One of its spec, of any values.
+
+    Raises:
+        InputError: The name has another end than those of ``FORMATS``, or the format can't hold the field.
+    """
+    if _format(path) == ".bin":
+        check_bin(made)
 
 
 def load_field(path: Path | str, conventions: BinConventions | None = None) -> Field:
