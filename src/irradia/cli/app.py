@@ -26,6 +26,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "bake": ("bake", "Bake a scene's lightmaps, with baked .glb and report."),
     "merge": ("merge", "Join the shards of one bake."),
     "sample": ("sample", "Sample a scene's light, for a field to learn from."),
+    "train": ("train", "A neural field from a dataset."),
     "render": ("render", "Path-trace an image of a scene or of a baked result."),
     "eval": ("eval", "A field against the path-traced reference."),
     "compare": ("compare", "Metrics between two images or lightmaps."),

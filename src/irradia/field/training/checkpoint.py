@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import json
 import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -93,23 +95,41 @@ def load_checkpoint(path: Path) -> Checkpoint:
     Raises:
         InputError: It is absent, damaged, or of another version.
     """
-    try:
-        with np.load(path, allow_pickle=False) as stored:
-            header = json.loads(stored["header"].tobytes())
-            arrays = {name: stored[name] for name in stored.files if name != "header"}
-        if header["version"] != VERSION:
-            raise InputError(f"expected version {VERSION}, found {header['version']}", where=str(path))
+    with _opened(path) as stored:
+        header = _header(stored, path)
+        arrays = {name: stored[name] for name in stored.files if name != "header"}
         state = TrainState(*(_group(arrays, group) for group in _GROUPS), step=header["step"])
         course = Course(**{**header["course"], "losses": tuple(header["course"]["losses"])})
         return Checkpoint(state, course, _group(arrays, "best"), header["identity"], header["scale"])
+
+
+def read_step(path: Path) -> int:
+    """After how many steps a checkpoint was taken; see :func:`load_checkpoint`."""
+    with _opened(path) as stored:
+        return _header(stored, path)["step"]
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """An archive whose defects become the user's to know."""
+    try:
+        with np.load(path, allow_pickle=False) as stored:
+            yield stored
     except FileNotFoundError as error:
         raise InputError(
             "there is no stopped training here", where=str(path), fix="Train without --resume."
         ) from error
-    except (ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, EOFError, zipfile.BadZipFile) as error:
         raise InputError(
             f"this checkpoint is damaged: {error}", where=str(path), fix="Train without --resume."
         ) from error
+
+
+def _header(stored: Any, path: Path) -> dict[str, Any]:
+    header = json.loads(stored["header"].tobytes())
+    if header["version"] != VERSION:
+        raise InputError(f"expected version {VERSION}, found {header['version']}", where=str(path))
+    return header
 
 
 def check_same(checkpoint: Checkpoint, identity: dict[str, Any], where: Path | str) -> None:

@@ -7,7 +7,7 @@ from typing import Literal
 
 from irradia.field.backend import Parameters
 from irradia.field.spec import FieldFrame, FieldSpec
-from irradia.field.training.figures import Figures
+from irradia.field.training.figures import Figures, Judge
 
 Why = Literal["steps", "time", "early stop", "stopped"]
 
@@ -92,6 +92,19 @@ class Saved:
 
 
 @dataclass(frozen=True)
+class Judges:
+    """Samples that a training is judged by.
+
+    Attributes:
+        validation: Drawn apart from those trained on, or single rows that were held out.
+        blocks: In blocks of space that were held out; None where none were.
+    """
+
+    validation: Judge
+    blocks: Judge | None
+
+
+@dataclass(frozen=True)
 class Finished:
     """The last event.
 
@@ -107,6 +120,7 @@ class Finished:
         samples_per_s: Of this process's steps.
         n_samples: Rows that could be drawn at the end.
         n_setbacks: How often it went back.
+        judges: Who gave the figures, to judge what is made of the field next.
     """
 
     why: Why
@@ -121,6 +135,7 @@ class Finished:
     samples_per_s: float
     n_samples: int
     n_setbacks: int
+    judges: Judges
 
 
 TrainEvent = Working | Remark | Stepped | Validated | SteppedBack | Saved | Finished

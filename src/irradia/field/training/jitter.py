@@ -39,6 +39,7 @@ N_NEIGHBOURS = 24
 _CHUNK_ROWS = 1 << 13
 _TRIES = 4
 _SAME_FACING = 0.9  # cosine
+_LIFT = 0.01  # of how far a copy may go
 _OFF_PLANE = 0.1  # of the disc's radius
 
 
@@ -90,9 +91,12 @@ def jittered_on_surfaces(
 
         def attempt(row: NDArray[np.int64], rng: np.random.Generator) -> tuple[F32, NDArray[np.bool_]]:
             place = start[row] + _tangent_offsets(normal[row], reach[row], rng)
-            clear = _clear if visible is None else lambda start, end, _: visible(start, end)
             near = around.of(row)
-            return place, _on_its_surface(place, normal[row], near) & clear(start[row], place, near)
+            good = _on_its_surface(place, normal[row], near)
+            if visible is None:
+                return place, good & _clear(start[row], place, near)
+            off = _LIFT * reach[row, None] * normal[row]  # rays along the surface itself would meet it
+            return place, good & visible(start[row] + off, place + off)
 
         return attempt
 

@@ -3,32 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Generator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irradia.core.errors import InputError
 from irradia.field.spec import FieldFrame
-from irradia.field.training.events import Remark, Working
-from irradia.field.training.figures import Judge, judge
+from irradia.field.training.events import Judges, Remark, Working
+from irradia.field.training.figures import judge
 from irradia.field.training.rows import HELD_OUT_SHARE, HeldOut
 from irradia.formats.samples import SampleFile
 
 _CHUNK_ROWS = 1 << 20
-
-
-@dataclass(frozen=True)
-class Judges:
-    """Those of a training.
-
-    Attributes:
-        validation: Samples drawn apart from those trained on, or single rows that were held out.
-        blocks: Samples in blocks of space that were held out; None where none were.
-    """
-
-    validation: Judge
-    blocks: Judge | None
 
 
 def find_judges(

@@ -20,6 +20,7 @@ from irradia.field.training import schedule
 from irradia.field.training.checkpoint import Checkpoint, Course, save_checkpoint
 from irradia.field.training.events import (
     Finished,
+    Judges,
     Remark,
     Saved,
     Stepped,
@@ -30,7 +31,6 @@ from irradia.field.training.events import (
 )
 from irradia.field.training.figures import Figures, Judge
 from irradia.field.training.growth import Growth
-from irradia.field.training.judges import Judges
 from irradia.field.training.options import TrainOptions
 from irradia.field.training.start import inference_parameters
 
@@ -240,6 +240,7 @@ class Run:
             self._samples_per_s(),
             self._data.source.n_rows,
             self._course.n_setbacks,
+            plan.judges,
         )
 
     def _spent_s(self) -> float:

@@ -41,7 +41,7 @@ class TrainContext:
         validation: Samples made for validation; without, 2 % of the rows are held out.
         start: Parameters trained before.
         visible: Test by rays for jitter; see :mod:`irradia.field.training.jitter`.
-        backend: What computes it; see :func:`irradia.field.backends.backend`.
+        backend: What computes it, or its name; see :func:`irradia.field.backends.backend`.
         checkpoint: File for checkpoints.
         resume: Go on from it.
         stop: Asked before each step whether to stop there.
@@ -50,7 +50,7 @@ class TrainContext:
     validation: SampleFile | None = None
     start: Parameters | None = None
     visible: Visibility | None = None
-    backend: str = "auto"
+    backend: Backend | str = "auto"
     checkpoint: Path | None = None
     resume: bool = False
     stop: Callable[[], bool] = lambda: False
@@ -81,7 +81,9 @@ def train(
     """
     options, context = options or TrainOptions(), context or TrainContext()
     check_fit(samples, spec)
-    computing = find_backend(context.backend, spec)
+    computing = context.backend
+    if isinstance(computing, str):
+        computing = find_backend(computing, spec)
     resumed = load_checkpoint(context.checkpoint) if context.resume and context.checkpoint else None
     identity = _identity(samples, spec, options)
     if resumed is not None:

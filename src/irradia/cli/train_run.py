@@ -1,0 +1,231 @@
+"""A whole training: samples, field, files."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from irradia.cli.train_job import TrainJob
+from irradia.cli.train_view import shown
+from irradia.core import provenance
+from irradia.core.errors import InputError, InternalError
+from irradia.core.progress import Progress
+from irradia.field.backend import Backend
+from irradia.field.backends import backend as find_backend
+from irradia.field.field import Field
+from irradia.field.files import FORMATS, load_field, save_field
+from irradia.field.registry import spec_to_dict
+from irradia.field.spec import FieldFrame, FieldSpec
+from irradia.field.training import Figures, Finished, Saved, TrainContext, Validated, train
+from irradia.field.training.checkpoint import read_step
+from irradia.field.training.curves import write_curves
+from irradia.field.training.log import LogRow, TrainingLog, read_log, write_log
+from irradia.formats.samples import SampleFile, open_samples, part_path, validation_path
+
+if TYPE_CHECKING:
+    from irradia.field.quantised import QuantisedField
+    from irradia.field.training.jitter import Visibility
+
+_WAIT_S = 0.5
+
+
+@dataclass
+class _Stop:
+    """Whether Ctrl-C was pressed."""
+
+    asked: bool = False
+
+    def ask(self) -> None:
+        """Ends the training after the step that runs."""
+        self.asked = True
+
+
+def run_training(job: TrainJob, progress: Progress) -> dict[str, Any]:
+    """Trains a field and writes it, its log and its curves.
+
+    Returns:
+        What came of it, plain values; ``complete`` is False where Ctrl-C ended it early.
+
+    Raises:
+        InputError: Something in the files or among the options is wrong.
+    """
+    start = time.perf_counter()
+    samples = open_data(job, progress)
+    spec = job.choices.spec(samples.info)
+    check_can_save(job, spec)
+    backend = backend_of(job, spec)
+    finished = _train(job, samples, spec, backend, progress)
+    samples = samples.grown()
+    made = _made(job, finished, samples, backend, progress)
+    n_bytes = save_field(job.out, made, _about(job, samples, finished, progress), precision=job.precision)
+    if finished.why == "stopped":
+        progress.say("Stopped early; the field is usable. The same command with --resume goes on.")
+    else:
+        job.checkpoint.unlink(missing_ok=True)
+    with progress.stage("Judge the file"):
+        parameters = load_field(job.out).parameters
+        shipped = finished.judges.validation.figures(backend.evaluator(spec, parameters))
+    return {
+        **_summary(job, finished, shipped),
+        "backend": backend.name,
+        "bytes": n_bytes,
+        "stage_s": {name: round(seconds, 4) for name, seconds in progress.seconds.items()},
+        "wall_s": round(time.perf_counter() - start, 3),
+    }
+
+
+def open_data(job: TrainJob, progress: Progress) -> SampleFile:
+    """The samples; with ``follow``, once they are there.
+
+    Raises:
+        InputError: They can't be read.
+    """
+    if job.follow and not _is_there(job.data):
+        with progress.stage("Wait for samples"):
+            while not _is_there(job.data):
+                time.sleep(_WAIT_S)
+    return open_samples(job.data)
+
+
+def _is_there(path: Path) -> bool:
+    return path.is_file() or part_path(path).is_file()
+
+
+def check_can_save(job: TrainJob, spec: FieldSpec) -> None:
+    """Refuses before training what couldn't be saved after it.
+
+    Raises:
+        InputError: The format is unknown, or can't hold such a field.
+    """
+    name = job.out.name.lower()
+    if not name.endswith(FORMATS):
+        raise InputError(f"expected a name that ends in {', '.join(FORMATS)}", where=f"-o {job.out}")
+    if not name.endswith(".bin"):
+        return
+    if job.finish is not None or job.precision != "fp16":
+        asked = f"--finish {job.finish}" if job.finish is not None else f"--precision {job.precision}"
+        raise InputError("a .bin holds halves", where=asked, fix="Save as .safetensors.")
+    from irradia.field.bin_writer import encode_bin
+
+    zeros = {name: np.zeros(shape, np.float32) for name, shape in spec.parameter_shapes().items()}
+    encode_bin(Field(spec, FieldFrame(np.array([[0, 0, 0], [1, 1, 1]], np.float32)), zeros))
+
+
+def backend_of(job: TrainJob, spec: FieldSpec) -> Backend:
+    """What computes the field, on as many threads as were asked for.
+
+    Raises:
+        InputError: It can't, or isn't there.
+    """
+    found = find_backend(job.backend, spec)
+    if job.threads is not None and found.name == "numba":
+        from irradia.field.backends.numba_backend import NumbaBackend
+
+        return NumbaBackend(job.threads)
+    return found
+
+
+def _train(
+    job: TrainJob, samples: SampleFile, spec: FieldSpec, backend: Backend, progress: Progress
+) -> Finished:
+    """Follows a training to its end, and writes its log on the way."""
+    stop = _Stop()
+    context = TrainContext(
+        validation=_validation(job, samples),
+        visible=_visibility(job, progress),
+        backend=backend,
+        checkpoint=job.checkpoint,
+        resume=job.resume,
+        stop=lambda: stop.asked,
+    )
+    log, finished = TrainingLog(_earlier_rows(job)), None
+    for event in shown(train(samples, spec, job.options, context), job.options, progress, stop.ask):
+        log.take(event)
+        if isinstance(event, (Validated, Saved, Finished)):
+            write_log(job.beside(".training.csv"), log.rows)
+        if isinstance(event, Finished):
+            write_curves(job.beside(".training.svg"), log.rows, job.out.name)
+            finished = event
+    if finished is None:
+        raise InternalError("a training ended without saying so")
+    return finished
+
+
+def _validation(job: TrainJob, samples: SampleFile) -> SampleFile | None:
+    """Samples to judge by: those asked for, else those beside the data."""
+    if job.validation is not None:
+        return open_samples(job.validation)
+    beside = validation_path(job.data.with_suffix(".samples"))
+    return open_samples(beside) if beside.is_file() and beside != samples.path else None
+
+
+def _visibility(job: TrainJob, progress: Progress) -> Visibility | None:
+    """A test by rays, where copies are made and their scene is named."""
+    if not job.options.data.jitter_copies or job.jitter_scene is None:
+        return None
+    from irradia.cli.train_sight import sight_in
+
+    return sight_in(job.jitter_scene, job.threads, progress)
+
+
+def _earlier_rows(job: TrainJob) -> list[LogRow]:
+    """What the log says of the training that is to go on."""
+    if not job.resume:
+        return []
+    return read_log(job.beside(".training.csv"), read_step(job.checkpoint))
+
+
+def _made(
+    job: TrainJob, finished: Finished, samples: SampleFile, backend: Backend, progress: Progress
+) -> Field | QuantisedField:
+    """What goes into the file."""
+    trained = Field(finished.spec, finished.frame, finished.parameters)
+    if job.finish is None:
+        return trained
+    from irradia.field.quantise import FinishOptions
+    from irradia.field.quantise import finish as finish_in_bits
+
+    options = job.options
+    finishing = FinishOptions(batch_size=options.batch_size, loss=options.loss, seed=options.seed)
+    bits = 8 if job.finish == "int8" else 4
+    return finish_in_bits(trained, bits, samples, finishing, backend=backend, progress=progress)
+
+
+def _about(job: TrainJob, samples: SampleFile, finished: Finished, progress: Progress) -> dict[str, Any]:
+    """The field's provenance: nothing that differs between runs that give the same field."""
+    with progress.stage("Hash samples"):
+        inputs = {job.data.name: provenance.sha256_file(samples.path)}
+    made = provenance.record(
+        "train", job.config(), seed=job.options.seed, inputs=inputs, device=None, wall_s=0.0
+    )
+    result = {"steps": finished.step, "loss": finished.loss, "validation": finished.figures.to_json()}
+    return {**made.reproducible(), "training": result, "samples": dict(samples.info.provenance)}
+
+
+def _summary(job: TrainJob, finished: Finished, shipped: Figures) -> dict[str, Any]:
+    held_out = finished.held_out
+    return {
+        "data": str(job.data),
+        "out": str(job.out),
+        "log": str(job.beside(".training.csv")),
+        "curves": str(job.beside(".training.svg")),
+        "complete": finished.why != "stopped",
+        "ended_by": finished.why,
+        "samples": finished.n_samples,
+        "steps": finished.step,
+        "batch_size": job.options.batch_size,
+        "loss": finished.loss,
+        "validation": shipped.to_json(),
+        "validation_before_rounding": finished.figures.to_json(),
+        "held_out_blocks": held_out.to_json() if held_out is not None else None,
+        "setbacks": finished.n_setbacks,
+        "samples_per_s": finished.samples_per_s,
+        "train_s": round(finished.spent_s, 3),
+        "parameters": finished.spec.n_parameters,
+        "scale": finished.frame.scale,
+        "spec": spec_to_dict(finished.spec),
+    }
