@@ -35,7 +35,13 @@ STRIDE = TILE + 16  # floats from one row of a tile to the next
 
 # Fast versions by the encoding's name: module beside this one, and class.
 ACCELERATED: dict[str, str] = {
-    "hash_grid": "numba_hash_grid:NumbaHashGrid",
+    "hash": "numba_hash_grid:NumbaHashGrid",
+    "triplane": "numba_tri_plane:NumbaTriPlane",
+    "frequency": "numba_frequency:NumbaFrequency",
+    "one_blob": "numba_one_blob:NumbaOneBlob",
+    "sh": "numba_spherical_harmonics:NumbaSphericalHarmonics",
+    "identity": "numba_identity:NumbaIdentity",
+    "composite": "numba_composite:NumbaComposite",
 }
 
 E = TypeVar("E", bound=Encoding)
