@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import copy
-import json as json_text
-import struct
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +14,7 @@ from irradia.core.errors import InternalError
 from irradia.core.files import write_atomic
 from irradia.export import lighting_extension
 from irradia.export.bindings import bind_nodes
+from irradia.export.container import glb_container
 from irradia.export.directional_extension import add_directional
 from irradia.export.earlier_bake import remove_earlier_bake
 from irradia.export.instances import GPU_INSTANCING, write_out_gpu_instances
@@ -36,7 +35,6 @@ from irradia.scene.types import Scene
 
 _COMPRESSION = (DRACO, "EXT_meshopt_compression", "KHR_meshopt_compression")
 _SIGNATURES = ((b"\x89PNG", "image/png"), (b"\xff\xd8", "image/jpeg"), (b"RIFF", "image/webp"))
-_JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
 
 
 def write_baked_glb(
@@ -100,7 +98,7 @@ def baked_glb(
         raise InternalError("the scene to export has no document")
     export = _Export(scene, scene.document, layout, pages, compatible)
     binary = export.run(encoding, directional, shadows, probes)
-    return _container(export.json, binary)
+    return glb_container(export.json, binary)
 
 
 def write_occlusion_glb(
@@ -122,7 +120,7 @@ def write_occlusion_glb(
     export = _Export(scene, scene.document, layout, openness, compatible=True, materials=OcclusionMaterials)
     binary = export.run_without_light()
     with write_atomic(path) as stream:
-        stream.write(_container(export.json, binary))
+        stream.write(glb_container(export.json, binary))
 
 
 class _Export:
@@ -235,14 +233,3 @@ def _node_extensions(json: Json) -> set[str]:
 
 def _mime_type(data: bytes) -> str:
     return next((kind for magic, kind in _SIGNATURES if data.startswith(magic)), "application/octet-stream")
-
-
-def _container(json: Json, binary: bytes) -> bytes:
-    """The two chunks of a .glb, padded to 4 bytes."""
-    text = json_text.dumps(json, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
-    text += b" " * (-len(text) % 4)
-    binary += bytes(-len(binary) % 4)
-    chunks = struct.pack("<II", len(text), _JSON_CHUNK) + text
-    if binary:
-        chunks += struct.pack("<II", len(binary), _BINARY_CHUNK) + binary
-    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks

@@ -23,12 +23,13 @@ F32 = NDArray[np.float32]
 
 LARGEST_CODE: dict[Bits, int] = {4: 7, 8: 127}
 _NIBBLE_BIAS = 8
-# Scales are sought among these shares of the one that reaches a block's largest value. Few bits gain by
-# clipping what is rare: at 4 bits it halves the squared error of a trained table.
+# Scales are sought among these shares of the one that reaches a block's largest value: few bits gain by
+# clipping what is rare. A block's scale is sought on so many of its values.
 _CLIPS: dict[Bits, tuple[float, ...]] = {
-    8: (1.0, 0.9, 0.8),
-    4: (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3),
+    8: (1.0, 0.9, 0.8, 0.7, 0.6),
+    4: (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.42, 0.35, 0.3, 0.25, 0.2, 0.17, 0.14, 0.12, 0.1),
 }
+_SOUGHT_ON = 1 << 14
 
 
 @dataclass(frozen=True)
@@ -82,19 +83,17 @@ def quantise(values: F32, bits: Bits, block: int) -> QuantisedTensor:
     """
     rows = _blocks(np.asarray(values, np.float32), block)
     largest = np.abs(rows).max(axis=1, keepdims=True)
-    best_codes = np.zeros(rows.shape, np.int8)
-    best_scales = np.zeros((len(rows), 1), np.float16)
-    least = np.full((len(rows), 1), np.inf, np.float32)
+    some = rows[:, :: -(-rows.shape[1] // _SOUGHT_ON) | 1]  # odd, to meet all features of an entry
+    scales = np.zeros(largest.shape, np.float16)
+    least = np.full(largest.shape, np.inf, np.float32)
     for clip in _CLIPS[bits]:
-        scales = _half(largest * np.float32(clip / LARGEST_CODE[bits]))
-        codes = _codes(rows, scales, bits)
-        error = np.square(codes * scales.astype(np.float32) - rows).sum(axis=1, keepdims=True)
-        better = error < least
-        best_codes = np.where(better, codes, best_codes)
-        best_scales = np.where(better, scales, best_scales)
+        tried = _half(largest * np.float32(clip / LARGEST_CODE[bits]))
+        error = np.square(_codes(some, tried, bits) * tried.astype(np.float32) - some)
+        error = error.sum(axis=1, keepdims=True)
+        scales = np.where(error < least, tried, scales)
         least = np.minimum(error, least)
-    codes = best_codes.reshape(-1)[: values.size].reshape(values.shape)
-    return QuantisedTensor(codes, best_scales[:, 0], bits, block)
+    codes = _codes(rows, scales, bits).reshape(-1)[: values.size].reshape(values.shape)
+    return QuantisedTensor(codes, scales[:, 0], bits, block)
 
 
 def unquantised(

@@ -1,0 +1,180 @@
+"""Makes a trained field small: its tables in 8 or 4 bits, and the rest taught to live with that.
+
+In rounds of a few steps each, tables learn from where rounding put them. What they learnt is added to the
+values before rounding, so that small changes add up until a code moves: a straight-through estimator (Bengio
+et al. 2013) that looks at the codes once a round. Then the tables are frozen, and the perceptron alone goes
+on. Its numbers end as half floats.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from irradia.core.errors import InputError
+from irradia.core.progress import Progress, silent_progress
+from irradia.core.rng import Seed
+from irradia.field.backend import Backend, LossName, Parameters, Rates, StepOptions
+from irradia.field.backends import backend as find_backend
+from irradia.field.field import Field
+from irradia.field.quantised import Bits, QuantisedField, QuantisedTensor, quantise
+from irradia.field.tensors import encoding_tensors, from_tensors, to_halves, to_tensors
+from irradia.field.training.batches import MemorySource
+from irradia.field.training.rows import Rows, check_fit, pack, spread
+from irradia.field.training.start import inference_parameters, state_of
+from irradia.formats.samples import SampleFile
+
+MAX_ROWS = 1 << 22
+# Values of an untouched entry of a hash grid are smaller than this, for they begin there: they become 0.
+UNTOUCHED = 1e-4
+
+
+@dataclass(frozen=True)
+class FinishOptions:
+    """How a field is taught.
+
+    Attributes:
+        block: Values that share a scale; 0 gives each level or plane one.
+        rounds: In which tables learn; 0 only rounds them.
+        round_steps: Of each.
+        steps: With frozen tables.
+        batch_size: Samples a step.
+        loss: See :mod:`irradia.field.losses`.
+        lr_encoding, lr_network: Learning rates; they fall exponentially to a tenth over all steps.
+        average: Decay of the running mean that the perceptron is taken from.
+        seed: Root of all randomness.
+    """
+
+    block: int = 0
+    rounds: int = 20
+    round_steps: int = 10
+    steps: int = 300
+    batch_size: int = 65_536
+    loss: LossName = "relative_l2"
+    lr_encoding: float = 1e-3
+    lr_network: float = 1e-3
+    average: float = 0.99
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        counts = (self.block, self.rounds, self.steps, self.round_steps - 1, self.batch_size - 1)
+        if min(counts) < 0:
+            raise InputError(f"expected counts of steps that aren't negative, found {self}")
+
+
+def round_tables(field: Field, bits: Bits, block: int = 0) -> QuantisedField:
+    """Rounds tables to codes, and everything else to halves, without any learning.
+
+    Args:
+        field: With or without tables.
+        bits: Of a code, 4 or 8.
+        block: As in :class:`FinishOptions`.
+    """
+    tensors = to_tensors(field.spec, field.parameters)
+    coded: dict[str, QuantisedTensor] = {}
+    for name in encoding_tensors(field.spec):
+        values = np.where(np.abs(tensors[name]) > UNTOUCHED, tensors[name], np.float32(0.0)).astype(
+            np.float32
+        )
+        coded[name] = quantise(values, bits, block or values.size)
+        tensors[name] = coded[name].values()
+    for name in tensors.keys() - coded.keys():
+        tensors[name] = to_halves(tensors[name], name).astype(np.float32)
+    parameters = from_tensors(field.spec, tensors)
+    return QuantisedField(replace(field, parameters=parameters), coded)
+
+
+def finish(
+    field: Field,
+    bits: Bits,
+    samples: SampleFile,
+    options: FinishOptions | None = None,
+    *,
+    backend: Backend | str = "auto",
+    progress: Progress | None = None,
+) -> QuantisedField:
+    """Rounds a trained field and lets it learn with what is left.
+
+    The same field, samples and options give the same codes.
+
+    Args:
+        field: Trained.
+        bits: Of a code, 4 or 8.
+        samples: That it was trained from.
+        options: How.
+        backend: Computes it, or its name.
+        progress: Shows how far it is.
+
+    Raises:
+        InputError: The samples aren't the field's.
+    """
+    options = options or FinishOptions()
+    check_fit(samples, field.spec)
+    computing = find_backend(backend, field.spec) if isinstance(backend, str) else backend
+    tables = frozenset(field.spec.parameter_shapes()) & {"position", "direction"}
+    rounds = options.rounds if tables else 0
+    total = rounds * options.round_steps + options.steps
+    with (progress or silent_progress()).stage(f"Finish in {bits} bits", total, "steps") as stage:
+        school = _School(field, samples, options, computing, total)
+        exact = field.parameters
+        for _ in range(rounds):
+            rounded = round_tables(replace(field, parameters=exact), bits, options.block).field.parameters
+            learnt = school.teach(rounded, options.round_steps, average=0.0)
+            exact = {
+                name: exact[name] + (values - rounded[name]) if name in tables else values
+                for name, values in learnt.items()
+            }
+            stage.advance(options.round_steps)
+        coded = round_tables(replace(field, parameters=exact), bits, options.block)
+        if options.steps:
+            start = {**coded.field.parameters, **_network(exact)}
+            learnt = school.teach(start, options.steps, average=options.average, frozen=tables)
+            coded = _with_network(coded, learnt)
+            stage.advance(options.steps)
+    return coded
+
+
+class _School:
+    """Batches and learning rates of one finishing, and Adam's moments from lesson to lesson."""
+
+    def __init__(
+        self, field: Field, samples: SampleFile, options: FinishOptions, backend: Backend, total: int
+    ) -> None:
+        rows = np.array(samples.rows[spread(len(samples), MAX_ROWS)])
+        packed = pack(rows, samples.info.n_values, field.frame)
+        self._source = MemorySource(Rows(packed, samples.info.has_normals))
+        self._spec, self._options, self._backend, self._total = field.spec, options, backend, total
+        self._seed = Seed(options.seed).child("finish")
+        self._state = state_of(field.parameters, StepOptions(average=0.0))
+
+    def teach(
+        self, parameters: Parameters, steps: int, *, average: float, frozen: frozenset[str] = frozenset()
+    ) -> Parameters:
+        """What parameters become in so many steps; with ``average`` above 0, their running mean."""
+        how = StepOptions(self._options.loss, average=average, frozen=frozen)
+        before = self._state.step
+        start = state_of(parameters, how)
+        moments = {"first": self._state.first, "second": self._state.second}
+        stepper = self._backend.stepper(self._spec, replace(start, step=before, **moments), how)
+        for step in range(before, before + steps):
+            batch = self._source.batch(step, self._options.batch_size, self._seed)
+            stepper.step(batch, self._rates(step))
+        self._state = stepper.state()
+        # The mean is as old as this lesson.
+        return inference_parameters(replace(self._state, step=steps), how)
+
+    def _rates(self, step: int) -> Rates:
+        left = 0.1 ** (step / self._total)
+        return Rates(self._options.lr_encoding * left, self._options.lr_network * left)
+
+
+def _network(parameters: Parameters) -> Parameters:
+    return {name: values for name, values in parameters.items() if name.startswith("mlp.")}
+
+
+def _with_network(coded: QuantisedField, learnt: Parameters) -> QuantisedField:
+    """The same codes behind another perceptron, rounded to halves."""
+    halves = {name: to_halves(values, name).astype(np.float32) for name, values in _network(learnt).items()}
+    parameters = {**coded.field.parameters, **halves}
+    return replace(coded, field=replace(coded.field, parameters=parameters))
