@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from irradia.cli import app
+from irradia.export.map_files import FORMATS, write_maps
 from irradia.formats.exr import write_exr_rgb
 from irradia.formats.lightmap import make_lightmap, write_lightmap
 
@@ -49,6 +50,25 @@ def test_only_covered_texels_of_lightmaps_count(tmp_path, capfd, picture):
     _, said = _compare(capfd, tmp_path / "a.exr", tmp_path / "b.exr")
     assert said["n_pixels"] == 320
     assert said["relmse"] == 0.0
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_a_lightmap_equals_itself_in_every_format(tmp_path, capfd, name):
+    smooth = np.linspace(300.0, 700.0, 24 * 32, dtype=np.float32).reshape(1, 24, 32, 1)
+    coverage = np.zeros((1, 24, 32), np.float32)
+    coverage[0, :, 4:28] = 1.0
+    lightmap = make_lightmap(np.repeat(smooth, 3, axis=-1), coverage)
+    stored, exact = write_maps(tmp_path, lightmap, [name, "exr"])
+    _, said = _compare(capfd, stored, exact)
+    assert said["n_pixels"] == 24 * 24
+    assert said["mean_ratio"] == pytest.approx(1.0, abs=5e-3)
+    assert said["relmse"] < 1e-4
+
+
+def test_a_texture_of_another_kind_is_bad_input(tmp_path, capfd, picture):
+    write_exr_rgb(tmp_path / "a.exr", picture)
+    (tmp_path / "b.ktx2").write_bytes(b"\xabKTX 20\xbb\r\n\x1a\n" + bytes(80))
+    assert _compare(capfd, tmp_path / "a.exr", tmp_path / "b.ktx2")[0] == 2
 
 
 def test_sizes_must_agree(tmp_path, capfd, picture):

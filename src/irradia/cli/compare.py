@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from irradia.export.map_files import MapPage
     from irradia.metrics import Comparison
 
 _FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
@@ -26,7 +27,8 @@ _FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 def command(test: Path, reference: Path, as_json: bool) -> None:
     """Metrics between two images or lightmaps.
 
-    TEST is judged against REFERENCE; .exr, .hdr, .png and .jpg are read. Of two lightmaps only texels
+    TEST is judged against REFERENCE; .exr, .hdr, .png and .jpg are read, and lightmap pages in all
+    formats of `irradia bake --format`. Where a lightmap's file tells coverage, as .exr does, only texels
     count that charts cover in both.
     """
     from irradia.metrics import compare
@@ -39,14 +41,28 @@ def load_pair(
     test: Path, reference: Path
 ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_] | None]:
     """Both files as linear arrays, with the mask of what counts."""
-    from irradia.formats.image import read_image
     from irradia.formats.lightmap import is_lightmap, read_lightmap
 
     if all(file.suffix.lower() == ".exr" and is_lightmap(file) for file in (test, reference)):
-        first, second = read_lightmap(test), read_lightmap(reference)
-        same_shape = first.covered.shape == second.covered.shape
-        return first.pages, second.pages, first.covered & second.covered if same_shape else None
-    return read_image(test), read_image(reference), None
+        whole = read_lightmap(test), read_lightmap(reference)
+        return whole[0].pages, whole[1].pages, _counted([each.coverage for each in whole])
+    first, second = _read_one(test), _read_one(reference)
+    return first.rgb, second.rgb, _counted([first.coverage, second.coverage])
+
+
+def _read_one(file: Path) -> MapPage:
+    from irradia.export.map_files import MapPage, is_map, read_map_page
+    from irradia.formats.image import read_image
+
+    return read_map_page(file) if is_map(file) else MapPage(read_image(file), None)
+
+
+def _counted(coverages: list[NDArray[np.float32] | None]) -> NDArray[np.bool_] | None:
+    """Where all that tell it are covered; None where none tells, or sizes differ, which is found later."""
+    covered = [coverage > 0.0 for coverage in coverages if coverage is not None]
+    if not covered or covered[0].shape != covered[-1].shape:
+        return None
+    return covered[0] & covered[-1]
 
 
 def describe(found: Comparison) -> str:

@@ -40,6 +40,19 @@ class MapFormat:
     write: Callable[[Path, LightmapFile, int, int], None]
 
 
+@dataclass(frozen=True)
+class MapPage:
+    """One page as it was read.
+
+    Attributes:
+        rgb: (H, W, 3) linear E/π.
+        coverage: (H, W) share of each texel that charts cover; None where the format doesn't say.
+    """
+
+    rgb: NDArray[np.float32]
+    coverage: NDArray[np.float32] | None
+
+
 def write_maps(
     folder: Path | str,
     lightmap: LightmapFile,
@@ -87,7 +100,25 @@ def parse_formats(text: str) -> tuple[str, ...]:
 
 
 def read_map(path: Path | str) -> NDArray[np.float32]:
-    """Reads one page of any of the formats as (H, W, 3) linear E/π.
+    """Reads one page of any of the formats as (H, W, 3) linear E/π; errors as :func:`read_map_page`."""
+    return read_map_page(path).rgb
+
+
+def is_map(path: Path | str) -> bool:
+    """Whether a file is a page of ours by its ending and its attributes, whose pixels aren't read.
+
+    Radiance HDR files hold E/π as it is, ours like any other: they need no telling apart, and count as no.
+    """
+    from irradia.formats.lightmap import is_lightmap
+    from irradia.formats.rgbm import is_rgbm_png
+
+    suffix = Path(path).suffix.lower()
+    tells = {".exr": is_lightmap, ".png": is_rgbm_png, ".ktx2": lambda _: True}
+    return suffix in tells and tells[suffix](path)
+
+
+def read_map_page(path: Path | str) -> MapPage:
+    """Reads one page of any of the formats.
 
     Raises:
         InputError: No such file, no lightmap of ours, damaged, or too large.
@@ -98,8 +129,8 @@ def read_map(path: Path | str) -> NDArray[np.float32]:
             f"expected a lightmap ending in {', '.join(_READERS)}, found {Path(path).name}", where=str(path)
         )
     try:
-        rgb, attributes = reader(path)
-        return rgb * np.float32(unit_of(attributes, path))
+        rgb, attributes, coverage = reader(path)
+        return MapPage(rgb * np.float32(unit_of(attributes, path)), coverage)
     except MemoryError as error:
         raise InputError("this map takes more memory than there is", where=str(path)) from error
 
@@ -162,28 +193,31 @@ def _text(lightmap: LightmapFile, page: int, unit: float) -> dict[str, str]:
     return {key: str(value) for key, value in page_attributes(lightmap, page, unit).items()}
 
 
-_Page = tuple[NDArray[np.float32], "dict[str, str | int | float]"]
+# Stored colour, attributes, coverage.
+_Page = tuple[NDArray[np.float32], "dict[str, str | int | float]", "NDArray[np.float32] | None"]
 
 
 def _read_exr(path: Path | str) -> _Page:
     from irradia.formats.exr import read_exr_image, rgb_from_channels
 
     image = read_exr_image(path)
-    return rgb_from_channels(image.channels, str(path)), dict(image.metadata)
+    coverage = image.channels.get("coverage")
+    rgb = rgb_from_channels(image.channels, str(path))
+    return rgb, dict(image.metadata), None if coverage is None else coverage.astype(np.float32)
 
 
 def _read_hdr(path: Path | str) -> _Page:
     from irradia.formats.hdr import read_hdr_image
 
     image = read_hdr_image(path)
-    return image.rgb, dict(image.metadata)
+    return image.rgb, dict(image.metadata), None
 
 
 def _read_rgbm(path: Path | str) -> _Page:
     from irradia.formats.rgbm import read_rgbm_png
 
     image = read_rgbm_png(path)
-    return image.rgb, dict(image.metadata)
+    return image.rgb, dict(image.metadata), None
 
 
 def _read_ktx2(path: Path | str) -> _Page:
@@ -196,7 +230,7 @@ def _read_ktx2(path: Path | str) -> _Page:
     texture = decode_ktx2(data, str(path))
     if len(texture.pages) != 1:
         raise InputError(f"expected one page, found {len(texture.pages)} layers", where=str(path))
-    return texture.pages[0], dict(texture.metadata)
+    return texture.pages[0], dict(texture.metadata), None
 
 
 def _format(name: str) -> MapFormat:
