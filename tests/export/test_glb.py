@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import struct
 from dataclasses import replace
@@ -180,6 +181,37 @@ def test_lights_in_the_map_shine_no_more_but_stay_known(gallery: GltfDocument, b
     assert (
         baked.json["extensions"]["KHR_lights_punctual"] == gallery.json["extensions"]["KHR_lights_punctual"]
     )
+
+
+def add_measured_light(document: GltfDocument) -> dict:
+    """Puts a measured light on a node of its own, and returns what that says of it."""
+    said = {"light": 0, "multiplier": 2.0, "color": [1.0, 0.5, 0.25]}
+    table = b"IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0 1 1 0\n0 90\n0\n100 50\n"
+    uri = "data:application/x-ies-lm-63;base64," + base64.b64encode(table).decode()
+    document.json["extensions"]["EXT_lights_ies"] = {"lights": [{"uri": uri}]}
+    document.json["extensionsUsed"].append("EXT_lights_ies")
+    node = {"name": "measured lamp", "extensions": {"EXT_lights_ies": dict(said)}}
+    document.json["nodes"].append(node)
+    document.json["scenes"][0]["nodes"].append(len(document.json["nodes"]) - 1)
+    return said
+
+
+def test_measured_lights_in_the_map_shine_no_more_but_stay_known(gallery: GltfDocument, bake) -> None:
+    said = add_measured_light(gallery)
+    baked = bake(gallery)
+    assert baked.json["nodes"][-1]["extensions"] == {NAME: {"bakedIesLight": said}}
+    assert baked.json["extensions"]["EXT_lights_ies"] == gallery.json["extensions"]["EXT_lights_ies"]
+    before, after = baked.scene.lights[-1], document_to_scene(baked.document).lights[-1]
+    assert (after.name, after.intensity) == (before.name, before.intensity)
+    assert after.intensity == (2.0, 1.0, 0.5)
+    assert after.profile is not None
+
+
+def test_measured_lights_come_back_once_they_are_live(gallery: GltfDocument, bake) -> None:
+    said = add_measured_light(gallery)
+    again = bake(gallery).document
+    again.json["nodes"][-1]["extras"] = {"irradia": {"mode": "mixed"}}
+    assert bake(again).json["nodes"][-1]["extensions"] == {"EXT_lights_ies": said}
 
 
 def test_variants_read_the_lightmap_too(gallery: GltfDocument, bake) -> None:

@@ -19,7 +19,7 @@ from irradia.scene.layout import LightmapLayout
 NAME = "IRRADIA_lighting"
 VERSION = 1
 NO_PAGE = 0xFFFF
-_LIGHTS = "KHR_lights_punctual"
+_LIGHTS, _MEASURED_LIGHTS = "KHR_lights_punctual", "EXT_lights_ies"
 
 
 def add_lightmap(json: Json, slots: Slots, pages: NDArray[np.float32], encoding: Encoding) -> None:
@@ -95,10 +95,11 @@ def bind_node(
 
 
 def move_baked_lights(json: Json, live: Container[int] = ()) -> None:
-    """Takes punctual lights off their nodes, because the map holds their light.
+    """Takes lights off their nodes, because the map holds their light.
 
-    The reference moves to ``bakedLight`` of our extension, the definitions stay where they are. Lights
-    that shine live stay on their nodes, and come back to them where an earlier bake took them off.
+    A punctual light's number moves to ``bakedLight`` of our extension, and what a node says of a measured
+    one to ``bakedIesLight``; the definitions stay where they are. Lights that shine live stay on their
+    nodes, and come back to them where an earlier bake took them off.
 
     Args:
         json: The document being written; changed.
@@ -106,13 +107,28 @@ def move_baked_lights(json: Json, live: Container[int] = ()) -> None:
     """
     for index, node in enumerate(json.get("nodes", [])):
         extensions = node.get("extensions", {})
-        if index in live and "bakedLight" in extensions.get(NAME, {}):
-            extensions[_LIGHTS] = {"light": extensions[NAME].pop("bakedLight")}
-            if not extensions[NAME]:
-                del extensions[NAME]
-        elif index not in live and _LIGHTS in extensions:
-            light = extensions.pop(_LIGHTS)["light"]
-            extensions.setdefault(NAME, {})["bakedLight"] = light
+        if index in live:
+            _put_back(extensions)
+        else:
+            _take_off(extensions)
+
+
+def _take_off(extensions: Json) -> None:
+    punctual, measured = (extensions.pop(name, None) for name in (_LIGHTS, _MEASURED_LIGHTS))
+    if punctual is not None:
+        extensions.setdefault(NAME, {})["bakedLight"] = punctual["light"]
+    if measured is not None:
+        extensions.setdefault(NAME, {})["bakedIesLight"] = measured
+
+
+def _put_back(extensions: Json) -> None:
+    ours = extensions.get(NAME, {})
+    if "bakedLight" in ours:
+        extensions[_LIGHTS] = {"light": ours.pop("bakedLight")}
+    if "bakedIesLight" in ours:
+        extensions[_MEASURED_LIGHTS] = ours.pop("bakedIesLight")
+    if NAME in extensions and not ours:
+        del extensions[NAME]
 
 
 def _rectangle(layout: LightmapLayout, binding: Binding) -> Json:

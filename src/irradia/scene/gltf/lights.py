@@ -49,7 +49,7 @@ def read_lights(document: GltfDocument, nodes: list[PlacedNode], notes: ImportNo
             if index >= len(lights):
                 raise InputError(f"expected an index below {len(lights)}, found {index}", where=pointer)
             placed.append(_read_light(lights[index], node, notes))
-        measured = node.view.extension("EXT_lights_ies")
+        measured = _measured_reference(node.view)
         if measured is not None:
             placed.append(_read_measured_light(measured, profiles, node, notes))
     return tuple(placed)
@@ -57,7 +57,7 @@ def read_lights(document: GltfDocument, nodes: list[PlacedNode], notes: ImportNo
 
 def carries_light(node: JsonView) -> bool:
     """Whether a light stands at this node, so that its ``extras.irradia`` may speak of it."""
-    return _reference(node) is not None or node.extension("EXT_lights_ies") is not None
+    return _reference(node) is not None or _measured_reference(node) is not None
 
 
 def _reference(node: JsonView) -> tuple[int, str] | None:
@@ -67,6 +67,14 @@ def _reference(node: JsonView) -> tuple[int, str] | None:
         if view is not None and view.has(key):
             return view.integer(key), f"{view.pointer}/{key}"
     return None
+
+
+def _measured_reference(node: JsonView) -> JsonView | None:
+    """What a node says of its measured light, also where an earlier bake took it out of loaders' sight."""
+    baked = node.extension("IRRADIA_lighting")
+    if baked is not None and baked.has("bakedIesLight"):
+        return baked.object("bakedIesLight")
+    return node.extension("EXT_lights_ies")
 
 
 def _read_light(view: JsonView, node: PlacedNode, notes: ImportNotes) -> Light:
