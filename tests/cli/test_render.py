@@ -66,6 +66,14 @@ def test_the_baked_file_shows_its_own_light(reference, tmp_path):
     assert np.corrcoef(image.ravel(), reference.ravel())[0, 1] > 0.95
 
 
+def test_an_image_without_the_directional_maps_inside_says_so(tmp_path, capfd):
+    bake = ["bake", "builtin:cornell", "-o", str(tmp_path), "--resolution", "64", "--samples", "8"]
+    assert app.run([*bake, "--no-report", "--directional", "sh"]) == 0
+    assert "maps inside" not in capfd.readouterr().err
+    assert _render(tmp_path / "scene.baked.glb", "--baked", "-o", tmp_path / "image.exr") == 0
+    assert "the sh maps inside" in capfd.readouterr().err
+
+
 @pytest.mark.parametrize(
     "arguments",
     [

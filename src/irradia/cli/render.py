@@ -44,7 +44,7 @@ MAX_SPP = 1 << 20
     show_default=True,
     help="Diffuse, as bakes are judged, or full materials.",
 )
-@click.option("--baked", is_flag=True, help="Show the lightmap inside SCENE instead of tracing light.")
+@click.option("--baked", is_flag=True, help="Show the plain lightmap inside SCENE instead of tracing light.")
 @click.option("--exposure", type=options.ANY, metavar="EV", help="Stops, for .png.  [default: automatic]")
 @options.lighting_options
 @options.scene_options
@@ -116,7 +116,7 @@ def _render(scene_spec: str, baked: bool, choices: dict[str, Any], progress: Pro
     light = options.light_options(**{name: choices[name] for name in options.LIGHT_NAMES})
     load = LoadOptions(pose_time=choices["pose_time"], variant=choices["variant"])
     if baked:
-        scene, lightmap = _open_baked(scene_spec, load, light)
+        scene, lightmap = _open_baked(scene_spec, load, light, progress)
     else:
         scene, lightmap = open_scene(scene_spec, load, light, progress), None
     camera = camera_from_spec(scene, choices["camera"], choices["width"] / choices["height"])
@@ -135,12 +135,19 @@ def _render(scene_spec: str, baked: bool, choices: dict[str, Any], progress: Pro
     return render(scene, camera, how, lightmap=lightmap, progress=progress)
 
 
-def _open_baked(spec: str, load: LoadOptions, light: LightOptions) -> tuple[Scene, BakedLight]:
+def _open_baked(
+    spec: str, load: LoadOptions, light: LightOptions, progress: Progress
+) -> tuple[Scene, BakedLight]:
     """A baked .glb; the surroundings are seen behind it, but light nothing that has a lightmap."""
     from irradia.cli.lighting import light_scene
     from irradia.export.read_baked import read_baked
     from irradia.transport.render import BakedLight
 
     baked = read_baked(spec, load)
+    if baked.directional is not None:
+        progress.say(
+            f"note: the image shows the plain lightmap on smooth normals; the {baked.directional.mode} maps "
+            "inside are for normal maps at run time"
+        )
     surroundings = replace(light, default_light=False)
     return light_scene(baked.scene, surroundings), BakedLight(baked.layout, baked.pages)
