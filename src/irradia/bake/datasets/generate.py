@@ -8,16 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from irradia.bake.datasets.options import SampleOptions
-from irradia.bake.datasets.placement import (
-    N_AT_ONCE,
-    FreePlaces,
-    LatticePlaces,
-    MixedPlaces,
-    Places,
-    SurfacePlaces,
-    batches,
-)
+from irradia.bake.datasets.placement import FreePlaces, LatticePlaces, SurfacePlaces
 from irradia.bake.datasets.setting import F64, Setting
+from irradia.bake.datasets.supply import N_AT_ONCE, MixedPlaces, Places, batches
 from irradia.core.rng import Seed
 from irradia.formats.sample_rows import SampleInfo
 from irradia.scene.types import F32

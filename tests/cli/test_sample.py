@@ -1,0 +1,138 @@
+"""``irradia sample``."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from irradia.cli import app
+from irradia.formats.samples import open_samples, part_path
+
+from .workshop import bake, lamp, write_workshop
+
+SMALL = ["--count", "600", "--samples", "8", "--resolution", "32", "--validation", "100"]
+
+
+@pytest.fixture(scope="module")
+def workshop(tmp_path_factory) -> Path:
+    return write_workshop(tmp_path_factory.mktemp("sample") / "workshop.gltf")
+
+
+def sample(scene: Path | str, out: Path, *options: str) -> int:
+    return app.run(["sample", str(scene), "-o", str(out), *SMALL, *options])
+
+
+@pytest.mark.parametrize(
+    ("options", "kind", "n_values"),
+    [
+        ([], "surface", 3),
+        (["--kind", "volume", "--quantity", "indirect"], "volume", 3),
+        (["--kind", "sh-random", "--order", "2"], "sh", 27),
+        (["--kind", "sh-grid", "--spacing", "0.5"], "sh", 12),
+    ],
+)
+def test_a_dataset_and_a_better_one_to_judge_by_are_written(
+    options, kind, n_values, workshop, tmp_path, capfd
+):
+    assert sample(workshop, tmp_path / "data.samples", "--json", *options) == 0
+    said = json.loads(capfd.readouterr().out)
+    train, judge = open_samples(tmp_path / "data.samples"), open_samples(tmp_path / "data.validation.samples")
+    assert (train.info.kind, train.info.n_values, train.info.samples_per_point) == (kind, n_values, 8)
+    assert train.info.quantity == ("indirect" if "indirect" in options else "full")
+    assert (len(judge), judge.info.samples_per_point) == (100, 128)
+    assert said["points"] == len(train) == (600 if "--spacing" not in options else len(train))
+    assert said["mean"] == pytest.approx(float(train.values[:, :3].mean()), rel=1e-4)
+    assert train.info.provenance["config"]["options"]["samples"] == 8
+    assert train.values.any()
+
+
+@pytest.mark.parametrize(("kind", "version"), [("surface", 1), ("sh-random", 2)])
+def test_a_bin_holds_the_same_numbers(kind, version, workshop, tmp_path):
+    for name in ("data.samples", "data.bin"):
+        assert sample(workshop, tmp_path / name, "--kind", kind) == 0
+    ours, theirs = open_samples(tmp_path / "data.samples"), open_samples(tmp_path / "data.bin")
+    assert theirs.info.provenance["version"] == version
+    np.testing.assert_allclose(theirs.values, ours.values, rtol=1e-5, atol=1e-7)
+    np.testing.assert_array_equal(theirs.positions, ours.positions)
+    assert {path.name for path in tmp_path.glob("*.samples")} == {"data.samples", "data.validation.samples"}
+
+
+def test_a_finished_bake_serves_as_the_light_of_surfaces(workshop, tmp_path):
+    bake(workshop, tmp_path / "bake", "--samples", "64")
+    assert sample(workshop, tmp_path / "a.samples", "--samples", "64") == 0
+    for where in (tmp_path / "bake", tmp_path / "bake" / "scene.baked.glb"):
+        assert sample(workshop, tmp_path / "b.samples", "--samples", "64", "--lightmap", str(where)) == 0
+        found, expected = open_samples(tmp_path / "b.samples"), open_samples(tmp_path / "a.samples")
+        np.testing.assert_allclose(found.values.mean(), expected.values.mean(), rtol=0.01)
+
+
+def test_a_bake_without_all_light_or_of_another_scene_is_refused(workshop, tmp_path, capfd):
+    live = write_workshop(tmp_path / "live.gltf", lambda j: lamp(j, "left lamp").update(_live()))
+    bake(workshop, tmp_path / "indirect", "--samples", "4", "--mode", "indirect")
+    bake(live, tmp_path / "live", "--samples", "4")
+    bake(workshop, tmp_path / "whole", "--samples", "4")
+    for scene, where, complaint in (
+        (workshop, "indirect", "full light"),
+        (live, "live", "live lights"),
+        ("builtin:cornell", "whole", "other surfaces"),
+    ):
+        assert sample(scene, tmp_path / "data.samples", "--lightmap", str(tmp_path / where)) == 2
+        assert complaint in capfd.readouterr().err
+    assert not list(tmp_path.glob("data*"))
+
+
+def _live() -> dict:
+    return {"extras": {"irradia": {"mode": "realtime"}}}
+
+
+def test_one_and_two_threads_write_the_same_bytes(workshop, tmp_path):
+    files = []
+    for threads in ("1", "2"):
+        out = tmp_path / threads / "data.samples"
+        command = ["sample", str(workshop), "-o", str(out), *SMALL, "--threads", threads]
+        subprocess.run([sys.executable, "-m", "irradia", *command], check=True, capture_output=True)
+        files.append([path.read_bytes() for path in sorted(out.parent.glob("data*.samples"))])
+    assert len(files[0]) == 2
+    assert files[0] == files[1]
+
+
+def test_ctrl_c_leaves_the_beginning_of_the_dataset(workshop, tmp_path):
+    out = tmp_path / "data.samples"
+    options = ["--count", "100000000", "--samples", "64", "--integrator", "path", "--validation", "0"]
+    command = [sys.executable, "-m", "irradia", "sample", str(workshop), "-o", str(out), *options]
+    with subprocess.Popen(command, stderr=subprocess.PIPE) as running:
+        deadline = time.monotonic() + 60.0
+        while not (part_path(out).exists() and len(open_samples(out)) > 0):
+            assert running.poll() is None
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+        running.send_signal(signal.SIGINT)
+        assert running.wait(timeout=60) == 130
+    found = open_samples(out)
+    assert found.finished
+    assert 0 < len(found) < 100_000_000
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["-o", "data.txt"],
+        ["-o", "data.bin", "--kind", "sh-grid", "--order", "2"],
+        ["-o", "data.samples", "--samples", "30"],
+        ["-o", "data.samples", "--spacing", "0.5"],
+        ["-o", "data.samples", "--integrator", "path", "--lightmap", "."],
+        ["-o", "data.samples", "--lightmap", "."],
+    ],
+)
+def test_bad_input_leaves_no_file(arguments, workshop, tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    assert app.run(["sample", str(workshop), *arguments]) == 2
+    assert capfd.readouterr().err
+    assert list(tmp_path.iterdir()) == []
