@@ -40,9 +40,9 @@ def check_same(a: Stepper, b: Stepper) -> None:
     ids=["defaults", "no skipping and no mean", "other decays"],
 )
 def test_steps_follow_the_reference(options, make_batch):
-    batches = [make_batch(SPEC, 300) for _ in range(5)]
-    losses, ours = trained(NumbaBackend(2).stepper(SPEC, new_state(SPEC, Seed(1)), options), batches)
-    expected, theirs = trained(NumpyBackend().stepper(SPEC, new_state(SPEC, Seed(1)), options), batches)
+    batches, start = [make_batch(SPEC, 300) for _ in range(5)], new_state(SPEC, Seed(1), options)
+    losses, ours = trained(NumbaBackend(2).stepper(SPEC, start, options), batches)
+    expected, theirs = trained(NumpyBackend().stepper(SPEC, start, options), batches)
     assert losses == pytest.approx(expected, rel=1e-5)
     ours, theirs = ours.state(), theirs.state()
     assert ours.step == theirs.step == 5
