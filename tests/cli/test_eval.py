@@ -23,12 +23,12 @@ SMALL = ["--pixels", "1024", "--reference-spp", "64", "--spp", "4", "--points", 
 BOX = np.float32([[-2, -1.5, -2.5], [2, 1.5, 2.5]])
 
 
-def _write_field(path, light: float = E, box: np.ndarray = BOX, quantity="full"):
+def _write_field(path, light: float = E, box: np.ndarray = BOX, width: int = 4):
     """A field that says the same everywhere."""
-    spec = FieldSpec(Identity(), Identity(), width=4, n_hidden_layers=1)
+    spec = FieldSpec(Identity(), Identity(), width=width, n_hidden_layers=1)
     parameters = {name: np.zeros_like(value) for name, value in new_parameters(spec, Seed(0)).items()}
     parameters["mlp.1.bias"][:] = math.log(light / 4.0)
-    save_field(path, Field(spec, FieldFrame(box, 4.0, quantity), parameters), precision="fp32")
+    save_field(path, Field(spec, FieldFrame(box, 4.0), parameters), precision="fp32")
     return path
 
 
@@ -98,7 +98,7 @@ def test_references_are_rendered_once(exact, tmp_path, monkeypatch):
 
 
 def test_rivals_have_the_size_of_the_field_and_the_light_of_the_furnace(tmp_path):
-    weights = _write_field(tmp_path / "f.safetensors")
+    weights = _write_field(tmp_path / "f.safetensors", width=128)
     assert _evaluate(weights, tmp_path / "out", "--baselines", "sh1,sh2,visibility,lightmap") == 0
     field, *rivals = _record(tmp_path / "out")["rivals"]
     assert len(rivals) == 4
@@ -112,7 +112,18 @@ def test_rivals_have_the_size_of_the_field_and_the_light_of_the_furnace(tmp_path
 
 def test_a_dataset_can_take_the_place_of_drawn_points(exact, tmp_path):
     data = tmp_path / "furnace.samples"
-    arguments = ["--kind", "volume", "--count", "512", "--samples", "32", "--integrator", "path"]
+    arguments = [
+        "--kind",
+        "volume",
+        "--count",
+        "512",
+        "--samples",
+        "32",
+        "--integrator",
+        "path",
+        "--validation",
+        "0",
+    ]
     assert app.run(["sample", FURNACE, "-o", str(data), *arguments]) == 0
     assert _evaluate(exact.parent / "field.safetensors", tmp_path / "out", "--samples", str(data)) == 0
     space = _record(tmp_path / "out")["rivals"][0]["space"]
@@ -122,7 +133,18 @@ def test_a_dataset_can_take_the_place_of_drawn_points(exact, tmp_path):
 
 def test_a_dataset_of_other_light_is_refused(tmp_path, capfd):
     data = tmp_path / "furnace.samples"
-    arguments = ["--kind", "volume", "--count", "64", "--samples", "4", "--integrator", "path"]
+    arguments = [
+        "--kind",
+        "volume",
+        "--count",
+        "64",
+        "--samples",
+        "4",
+        "--integrator",
+        "path",
+        "--validation",
+        "0",
+    ]
     assert app.run(["sample", FURNACE, "-o", str(data), *arguments, "--quantity", "indirect"]) == 0
     assert _evaluate(_write_field(tmp_path / "f.safetensors"), tmp_path / "out", "--samples", str(data)) == 2
     assert "expected samples of full light" in capfd.readouterr().err
@@ -133,6 +155,13 @@ def test_a_field_of_another_place_is_refused(tmp_path, capfd):
     assert _evaluate(weights, tmp_path / "out") == 2
     assert "another scene" in capfd.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_baselines_that_so_few_bytes_cannot_hold_are_left_out_with_a_note(tmp_path, capfd):
+    weights = _write_field(tmp_path / "f.safetensors")
+    assert _evaluate(weights, tmp_path / "out", "--baselines", "visibility,lightmap") == 0
+    assert [rival["key"] for rival in _record(tmp_path / "out")["rivals"]] == ["field"]
+    assert "too few for the baseline visibility" in capfd.readouterr().err
 
 
 @pytest.mark.parametrize("names", ["sh3", "sh1,", "every"])

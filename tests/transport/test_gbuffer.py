@@ -63,7 +63,7 @@ DARKNESS = _even(0.0, 0.0, 0.0)
 def test_a_sheet_under_the_sky_is_its_reflectance_times_its_irradiance():
     scene = stacked([Sheet(matte(0.5))], environment=SKY)
     picture = _under(scene, _even(np.pi, 2 * np.pi, 3 * np.pi))
-    np.testing.assert_allclose(picture, _traced(scene, spp=256), rtol=0.05)
+    np.testing.assert_allclose(picture, _traced(scene), rtol=1e-4)
 
 
 def test_what_shines_and_the_backdrop_are_pixel_by_pixel_those_of_the_renderer():
@@ -75,7 +75,7 @@ def test_what_shines_and_the_backdrop_are_pixel_by_pixel_those_of_the_renderer()
 
 def test_live_lights_are_added_and_baked_ones_left_to_the_field():
     live = stacked([Sheet(matte(0.6))], (replace(LAMP, mode="realtime"),))
-    np.testing.assert_allclose(_under(live, DARKNESS), _traced(live, spp=64), rtol=0.05, atol=0.01)
+    np.testing.assert_allclose(_under(live, DARKNESS), _traced(live), rtol=1e-4)
     assert _under(live, DARKNESS).max() > 0.1
     assert _under(stacked([Sheet(matte(0.6))], (LAMP,)), DARKNESS).max() == 0.0
 

@@ -27,6 +27,13 @@ _VERSION = 1
 _RAYS_PER_PROBE = 1024
 _SIGHT_BYTES = 16 * 16 * 2 * 2  # the octahedral map of distances beside each probe, in halves
 _LIGHTMAP_SAMPLES = 256
+_SMALLEST_EDGE = 32
+_LEAST_BYTES = {
+    "sh1": probe_bytes(1),
+    "sh2": probe_bytes(2),
+    "visibility": probe_bytes(2) + _SIGHT_BYTES,
+    "lightmap": 4 * _SMALLEST_EDGE**2,
+}
 
 
 @dataclass(frozen=True)
@@ -34,23 +41,37 @@ class Baseline:
     """Light at any place from something other than a field.
 
     Attributes:
+        key: Its name on the command line; ``field`` of the field itself.
         name: For people.
         n_bytes: As shipped.
         irradiance: E (N, 3) at positions and normals; None where it knows only surfaces.
         lightmap: To render from; None where it knows space.
     """
 
+    key: str
     name: str
     n_bytes: int
     irradiance: Callable[[F32, F32], F32] | None = None
     lightmap: BakedLight | None = None
 
 
+def make_baseline(key: str, scene: Scene, n_bytes: int, progress: Progress, seed: int) -> Baseline | None:
+    """One of :data:`BASELINES`, or None where so few bytes can't hold it."""
+    if n_bytes < _LEAST_BYTES[key]:
+        progress.say(f"note: {n_bytes} bytes are too few for the baseline {key}")
+        return None
+    if key == "lightmap":
+        return small_lightmap(scene, n_bytes, progress, seed)
+    if key == "visibility":
+        return sighted_grid(scene, n_bytes, progress, seed)
+    return sh_grid(scene, int(key.removeprefix("sh")), n_bytes, progress, seed)
+
+
 def sh_grid(scene: Scene, order: int, n_bytes: int, progress: Progress, seed: int = 0) -> Baseline:
     """A lattice of probes of SH to an order, read trilinearly."""
     probes = _probes(scene, n_bytes // probe_bytes(order), progress, seed)
     grid = ShGrid.of(*_lattice(probes), probes.coefficients, order)
-    return Baseline(f"SH L{order} grid, {_by(probes)}", grid.n_bytes, grid.irradiance)
+    return Baseline(f"sh{order}", f"SH L{order} grid, {_by(probes)}", grid.n_bytes, grid.irradiance)
 
 
 def sighted_grid(scene: Scene, n_bytes: int, progress: Progress, seed: int = 0) -> Baseline:
@@ -66,18 +87,20 @@ def sighted_grid(scene: Scene, n_bytes: int, progress: Progress, seed: int = 0) 
         )
         return found.astype(np.float32)
 
-    return Baseline(f"SH L2 grid with visibility, {_by(probes)}", each * len(probes), irradiance)
+    return Baseline(
+        "visibility", f"SH L2 grid with visibility, {_by(probes)}", each * len(probes), irradiance
+    )
 
 
 def small_lightmap(scene: Scene, n_bytes: int, progress: Progress, seed: int = 0) -> Baseline:
     """A lightmap baked at the size at which its RGB9E5 texels, packed with zstd, take as many bytes."""
-    edge = max(math.isqrt(n_bytes // 4), 16)
+    edge = math.isqrt(n_bytes // 4)
     baked, size = _baked(scene, edge, progress, seed)
-    better = max(round(edge * math.sqrt(n_bytes / size)), 16)
-    if size > n_bytes or better > edge:
+    better = round(edge * math.sqrt(n_bytes / size))
+    if better > edge:
         edge = better
         baked, size = _baked(scene, edge, progress, seed)
-    return Baseline(f"lightmap, {edge}²", size, lightmap=baked)
+    return Baseline("lightmap", f"lightmap, {edge}²", size, lightmap=baked)
 
 
 def _baked(scene: Scene, edge: int, progress: Progress, seed: int) -> tuple[BakedLight, int]:

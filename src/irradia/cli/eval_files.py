@@ -161,6 +161,7 @@ def _comparison(job: EvalJob, found: Evaluation, number: int, camera: Camera) ->
 
 def _rival_record(rival: Judged) -> dict[str, Any]:
     return {
+        "key": rival.key,
         "name": rival.name,
         "n_bytes": rival.n_bytes,
         "flip": rival.flip,
@@ -191,9 +192,8 @@ def _write_pictures(folder: Path, job: EvalJob, found: Evaluation, number: int) 
     write_png(folder / f"view{number}.field.png", picture_srgb8(view.picture, exposure_ev))
     reference = found.references[number].mean
     write_png(folder / f"view{number}.reference.png", picture_srgb8(reference, exposure_ev))
-    for place, rival in enumerate(found.rivals):
-        name = "field" if place == 0 else job.baselines[place - 1]
-        write_png(folder / f"error{number}.{name}.png", error_colours(rival.views[number].scores.error))
+    for rival in found.rivals:
+        write_png(folder / f"error{number}.{rival.key}.png", error_colours(rival.views[number].scores.error))
 
 
 def _finite(value: Any) -> Any:

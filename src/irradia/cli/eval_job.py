@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -46,12 +46,12 @@ class Judged:
     """One way to store the light, judged.
 
     Attributes:
-        name: For people.
-        n_bytes: As shipped.
+        key, name, n_bytes: As of the baseline.
         views: By camera.
         space, leaks: None where it knows only surfaces, or nothing was drawn in space.
     """
 
+    key: str
     name: str
     n_bytes: int
     views: tuple[View, ...]
@@ -130,7 +130,10 @@ def evaluate(job: EvalJob, scene: Scene, stored: StoredField, progress: Progress
     cameras = _cameras(scene, job.pictures)
     references = tuple(_reference(job, scene, camera, progress) for camera in cameras)
     samples = space_samples(job, scene, field, progress)
-    shown = [Baseline("neural field", n_bytes, field.irradiance), *_baselines(job, scene, n_bytes, progress)]
+    shown = [
+        Baseline("field", "neural field", n_bytes, field.irradiance),
+        *_baselines(job, scene, n_bytes, progress),
+    ]
     rivals = tuple(_judge(job, scene, each, cameras, references, samples, progress) for each in shown)
     with progress.stage("queries"):
         evaluator = backend(field.backend_name, field.spec).evaluator(field.spec, field.parameters)
@@ -154,13 +157,13 @@ def _judge(
         picture = _picture(job, scene, rival, camera, progress)
         views.append(View(picture, score_picture(picture, reference.first, reference.second)))
     if samples is None or rival.irradiance is None:
-        return Judged(rival.name, rival.n_bytes, tuple(views))
+        return Judged(rival.key, rival.name, rival.n_bytes, tuple(views))
     with progress.stage(f"{rival.name} in space"):
         values = rival.irradiance(samples.positions, samples.normals)
     evenly = samples.evenly
     space = score_in_space(values[evenly], samples.irradiance[evenly], samples.variance[evenly])
     leaks = leak_ratio(values, samples.irradiance, samples.variance, samples.distance_m)
-    return Judged(rival.name, rival.n_bytes, tuple(views), space, leaks)
+    return Judged(rival.key, rival.name, rival.n_bytes, tuple(views), space, leaks)
 
 
 def _picture(job: EvalJob, scene: Scene, rival: Baseline, camera: Camera, progress: Progress) -> F32:
@@ -198,15 +201,10 @@ def _cameras(scene: Scene, options: PictureOptions) -> tuple[Camera, ...]:
 
 
 def _baselines(job: EvalJob, scene: Scene, n_bytes: int, progress: Progress) -> list[Baseline]:
-    from irradia.cli.eval_baselines import sh_grid, sighted_grid, small_lightmap
+    from irradia.cli.eval_baselines import make_baseline
 
-    make: dict[str, Callable[[], Baseline]] = {
-        "sh1": lambda: sh_grid(scene, 1, n_bytes, progress, job.seed),
-        "sh2": lambda: sh_grid(scene, 2, n_bytes, progress, job.seed),
-        "visibility": lambda: sighted_grid(scene, n_bytes, progress, job.seed),
-        "lightmap": lambda: small_lightmap(scene, n_bytes, progress, job.seed),
-    }
-    return [make[name]() for name in job.baselines]
+    made = (make_baseline(key, scene, n_bytes, progress, job.seed) for key in job.baselines)
+    return [baseline for baseline in made if baseline is not None]
 
 
 def _check_box(field: Field, scene: Scene) -> None:

@@ -60,7 +60,7 @@ def cached_arrays(
     """
     path = cached_path(kind, key, ".npz")
     try:
-        with np.load(path, allow_pickle=False) as stored:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as stored:
             return {name: stored[name] for name in stored.files}
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
         arrays = make()
