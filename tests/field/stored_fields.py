@@ -14,7 +14,6 @@ BOX = np.array([(-1.0, 0.0, 0.5), (1.0, 2.0, 4.5)], np.float32)
 GRID = HashGrid(n_levels=3, log2_table_size=7, base_resolution=3, max_resolution=11)
 PLANES = TriPlane(resolution=5, n_features=3)
 WAVES = Frequency(n_frequencies=3, include_identity=True)
-ENCODINGS = (GRID, PLANES, WAVES)
 
 
 def exact(*shape: int) -> np.ndarray:

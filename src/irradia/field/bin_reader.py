@@ -141,11 +141,17 @@ def _our_planes(values: F32, planes: TriPlane, conventions: BinConventions) -> F
         texels = values.reshape(3, c, n, n).transpose(0, 2, 3, 1)
     else:
         texels = values.reshape(3, n, n, c)
-    found: dict[str, F32] = {}
-    for axes, plane in zip(conventions.planes.split(), texels, strict=True):
-        found[axes] = plane
-        found[axes[::-1]] = plane.transpose(1, 0, 2)
-    return np.stack([found[axes] for axes in _OUR_PLANES]).reshape(-1)
+    stored = conventions.planes.split()
+    ours: list[F32] = []
+    for axes, place in zip(_OUR_PLANES, _places_of_planes(conventions), strict=True):
+        ours.append(texels[place] if stored[place] == axes else texels[place].transpose(1, 0, 2))
+    return np.stack(ours).reshape(-1)
+
+
+def _places_of_planes(conventions: BinConventions) -> list[int]:
+    """Where in the file our planes are; one by the same axes, the other way round, is the same turned."""
+    stored = ["".join(sorted(axes)) for axes in conventions.planes.split()]
+    return [stored.index(axes) for axes in _OUR_PLANES]
 
 
 def _split(content: BinField, conventions: BinConventions) -> list[Layer]:
@@ -176,7 +182,7 @@ def _our_inputs(weight: F32, bias: F32, content: BinField, conventions: BinConve
     """The first layer with columns for our features, then for the signed normal."""
     n = content.header.n_features
     if content.n_outputs > 4:
-        return _our_waves(weight[:, :n], content, conventions), bias
+        return _our_features(weight[:, :n], content, conventions), bias
     if conventions.inputs == "features_normal":
         features, normal = weight[:, :n], weight[:, n : n + 3]
     else:
@@ -184,14 +190,20 @@ def _our_inputs(weight: F32, bias: F32, content: BinField, conventions: BinConve
     if conventions.normal == "unit":  # W (n + 1) / 2 + b
         normal = normal * np.float32(0.5)
         bias = bias + normal.sum(axis=1)
-    return np.hstack([_our_waves(features, content, conventions), normal]), bias
+    return np.hstack([_our_features(features, content, conventions), normal]), bias
+
+
+def _our_features(columns: F32, content: BinField, conventions: BinConventions) -> F32:
+    """The first matrix' columns for features, in our order."""
+    if content.header.encoding == TRI_PLANE:
+        by_plane = columns.reshape(len(columns), 3, -1)
+        return by_plane[:, _places_of_planes(conventions)].reshape(columns.shape)
+    return _our_waves(columns, content, conventions) if content.header.encoding == FREQUENCY else columns
 
 
 def _our_waves(columns: F32, content: BinField, conventions: BinConventions) -> F32:
-    """Columns of frequency features in our order; of other encodings as they are."""
+    """Those of frequency features."""
     header = content.header
-    if header.encoding != FREQUENCY:
-        return columns
     n_identity = 3 * header.c
     first = len(columns[0]) - n_identity if conventions.identity_last else 0
     identity = columns[:, first : first + n_identity]

@@ -74,9 +74,7 @@ def round_tables(field: Field, bits: Bits, block: int = 0) -> QuantisedField:
     tensors = to_tensors(field.spec, field.parameters)
     coded: dict[str, QuantisedTensor] = {}
     for name in encoding_tensors(field.spec):
-        values = np.where(np.abs(tensors[name]) > UNTOUCHED, tensors[name], np.float32(0.0)).astype(
-            np.float32
-        )
+        values = np.where(np.abs(tensors[name]) > UNTOUCHED, tensors[name], np.float32(0.0))
         coded[name] = quantise(values, bits, block or values.size)
         tensors[name] = coded[name].values()
     for name in tensors.keys() - coded.keys():
@@ -122,7 +120,7 @@ def finish(
             rounded = round_tables(replace(field, parameters=exact), bits, options.block).field.parameters
             learnt = school.teach(rounded, options.round_steps, average=0.0)
             exact = {
-                name: exact[name] + (values - rounded[name]) if name in tables else values
+                name: np.add(exact[name], values - rounded[name]) if name in tables else values
                 for name, values in learnt.items()
             }
             stage.advance(options.round_steps)
