@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from irradia.core.device import CudaStatus
 from irradia.core.errors import InputError, MissingDependencyError
 from irradia.core.rng import Seed
 from irradia.field import backends
-from irradia.field.backend import Rates, StepOptions
+from irradia.field.backend import AdamOptions, Rates, StepOptions
 from irradia.field.backends import backend, matrix, matrix_text, numpy_backend
 from irradia.field.backends.numpy_backend import NumpyBackend
 from irradia.field.encodings import HashGrid, Identity, SphericalHarmonics
@@ -38,6 +40,15 @@ def test_the_printed_matrix_has_a_line_an_encoding():
 
 def test_the_automatic_choice_is_a_backend_that_can():
     assert not backend("auto", SPEC).lacks(SPEC)
+
+
+def test_a_gpus_backend_is_no_automatic_choice_without_a_gpu(monkeypatch):
+    abacus = ("numba_backend", "NumbaBackend", "numba")
+    monkeypatch.setattr(backends, "BACKENDS", {"abacus": abacus, "numpy": backends.BACKENDS["numpy"]})
+    monkeypatch.setattr(backends, "ON_GPU", frozenset({"abacus"}))
+    for gpu, chosen in ((None, "numpy"), ("a GPU", "numba")):
+        monkeypatch.setattr(backends, "cuda_status", lambda gpu=gpu: CudaStatus(gpu, False, ""))
+        assert backend("auto", SPEC).name == chosen
 
 
 def test_an_unknown_backend_is_named_with_its_nearest():
@@ -118,6 +129,18 @@ def test_encodings_and_network_learn_at_their_own_rates(make_batch):
     moved = np.abs(end["position"] - start.parameters["position"])
     assert moved.max() == pytest.approx(0.5, rel=1e-3)
     assert moved.min() == 0.0  # entries that no sample met
+
+
+@pytest.mark.parametrize("kind", ["encoding", "network"])
+def test_encodings_and_network_have_their_own_adam(kind, make_batch):
+    still = replace(StepOptions(), **{f"{kind}_adam": AdamOptions(epsilon=1e30)})
+    start = new_state(SPEC, Seed(1))
+    stepper = NumpyBackend().stepper(SPEC, start, still)
+    stepper.step(make_batch(SPEC), RATES)
+    end = stepper.state().parameters
+    for name, is_network in (("position", False), ("mlp.1.weight", True)):
+        moved = (end[name] != start.parameters[name]).any()
+        assert moved == (is_network != (kind == "network"))
 
 
 def test_evaluating_in_chunks_changes_nothing(make_batch, monkeypatch):

@@ -77,11 +77,12 @@ def test_beyond_the_last_corner_an_index_runs_on_into_the_next_row():
     assert features[0, 0] == pytest.approx(0.5, abs=1e-6)
 
 
-def test_the_corner_of_the_box_stays_within_the_table(rng):
-    grid = HashGrid(4, 8, 2, 3, 30)
-    table = rng.random(grid.n_parameters)
-    features = grid.forward(at(1.0, 1.0, 1.0), table)
-    assert ((features >= 0.0) & (features <= 1.0)).all()
+def test_the_corner_of_the_box_wraps_at_the_end_of_its_table():
+    grid = HashGrid(1, 12, 1, 3, 3)
+    # At (1, 1, 1) a point lies at 2.5: an eighth of corner (3, 3, 3), whose index 39 is 7 of 32 entries.
+    assert grid.n_parameters == 32
+    features = grid.forward(at(1.0, 1.0, 1.0), only(grid, 0, 39 % 32))
+    assert features[0, 0] == pytest.approx(1 / 8)
 
 
 def test_points_outside_the_box_are_clamped_to_it(rng):
@@ -124,9 +125,9 @@ def test_the_floor_convention_has_no_half_cell():
 
 
 def test_dense_levels_may_be_hashed_too():
-    grid = HashGrid(1, 12, 1, 16, 16, hash_all=True)
-    # Corner (1, 2, 3) as above, modulo 4096.
-    features = grid.forward(at(0.5 / 15, 1.5 / 15, 2.5 / 15), only(grid, 0, 2892625372 % 4096))
+    grid = HashGrid(1, 12, 1, 6, 6, hash_all=True)
+    # Corner (1, 2, 3) as above, modulo the level's 216 entries.
+    features = grid.forward(at(0.5 / 5, 1.5 / 5, 2.5 / 5), only(grid, 0, 2892625372 % 216))
     assert features[0, 0] == pytest.approx(1.0, abs=1e-5)
 
 

@@ -16,7 +16,7 @@ from irradia.field.checks import check_parameters
 from irradia.field.spec import FieldFrame, FieldSpec
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Field:
     """What files hold and everything that shows light asks.
 

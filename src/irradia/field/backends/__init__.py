@@ -1,7 +1,7 @@
 """The ways to compute fields, loaded when they are asked for.
 
 To add one, derive from :class:`irradia.field.backend.Backend` in a module here and give it a line in
-``BACKENDS``. NumPy comes last: it can do everything, slowly.
+``BACKENDS``. Its constructor takes the number of threads, or None for all that the process may use.
 """
 
 from __future__ import annotations
@@ -16,28 +16,30 @@ from irradia.field.backend import Backend
 from irradia.field.registry import ENCODINGS
 from irradia.field.spec import FieldSpec
 
-BACKENDS = {  # name → module here, class, library that it needs
-    "numba": ("numba_backend", "NumbaBackend", "numba"),
+BACKENDS = {  # fastest first: name → module here, class, library that it needs
     "drjit": ("drjit_backend", "DrJitBackend", "drjit"),
+    "numba": ("numba_backend", "NumbaBackend", "numba"),
     "numpy": ("numpy_backend", "NumpyBackend", "numpy"),
 }
+ON_GPU = frozenset({"drjit"})  # chosen by hand only where there is none
 
 
-def backend(name: str = "auto", spec: FieldSpec | None = None) -> Backend:
+def backend(name: str = "auto", spec: FieldSpec | None = None, threads: int | None = None) -> Backend:
     """Finds what computes a field.
 
     Args:
         name: A backend's name; or ``auto``, which is the fastest here that can do the spec: Dr.Jit where
             there is a GPU, else Numba, else NumPy.
         spec: What will be computed; None asks for no more than that the backend exists.
+        threads: Of the CPU; None takes all that this process may use.
 
     Raises:
         InputError: If there is no such backend, or it can't do the spec.
         MissingDependencyError: If its library isn't installed.
     """
     if name == "auto":
-        return _fastest(spec)
-    found = _load(name)
+        return _fastest(spec, threads)
+    found = _load(name, threads)
     if spec is not None and (lack := found.lacks(spec)):
         raise InputError(
             f"{name} can't compute this field: {lack}", where="--backend", fix="Use --backend auto."
@@ -70,13 +72,10 @@ def matrix_text() -> str:
     return "\n".join(lines) + "\n"
 
 
-def _fastest(spec: FieldSpec | None) -> Backend:
-    names = available()
-    if not cuda_status().gpu and "drjit" in names:
-        names.remove("drjit")
-    elif "drjit" in names:
-        names.sort(key=lambda name: name != "drjit")
-    candidates = map(_load, names)
+def _fastest(spec: FieldSpec | None, threads: int | None) -> Backend:
+    on_gpu = cuda_status().gpu is not None
+    names = [name for name in available() if on_gpu or name not in ON_GPU]
+    candidates = (_load(name, threads) for name in names)
     return next(found for found in candidates if spec is None or not found.lacks(spec))
 
 
@@ -85,7 +84,7 @@ def _is_there(name: str) -> bool:
     return all(importlib.util.find_spec(needed) for needed in (library, f"{__name__}.{module}"))
 
 
-def _load(name: str) -> Backend:
+def _load(name: str, threads: int | None = None) -> Backend:
     if name not in BACKENDS:
         raise InputError(f"no backend {name!r}", where="--backend", fix=did_you_mean(name, BACKENDS))
     module, class_name, library = BACKENDS[name]
@@ -93,7 +92,7 @@ def _load(name: str) -> Backend:
         raise MissingDependencyError(
             f"the backend {name} needs {library}", where="--backend", fix=f"pip install {library}"
         )
-    return getattr(importlib.import_module(f"{__name__}.{module}"), class_name)()
+    return getattr(importlib.import_module(f"{__name__}.{module}"), class_name)(threads)
 
 
 def _probe(encoding: str) -> FieldSpec:

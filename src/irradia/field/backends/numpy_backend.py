@@ -26,9 +26,16 @@ CHUNK = 1 << 16  # points evaluated at a time, to bound memory
 
 
 class NumpyBackend(Backend):
-    """Does everything, slowly."""
+    """Does everything, slowly.
+
+    Args:
+        threads: Nothing here has any; those of NumPy's own BLAS are the environment's.
+    """
 
     name: ClassVar[str] = "numpy"
+
+    def __init__(self, threads: int | None = None) -> None:
+        del threads
 
     def lacks(self, spec: FieldSpec) -> str | None:
         """Nothing."""
