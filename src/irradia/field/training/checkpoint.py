@@ -113,7 +113,7 @@ def read_step(path: Path) -> int:
 def _opened(path: Path) -> Iterator[Any]:
     """An archive whose defects become the user's to know."""
     try:
-        with np.load(path, allow_pickle=False) as stored:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as stored:
             yield stored
     except FileNotFoundError as error:
         raise InputError(

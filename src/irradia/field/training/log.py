@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import csv
 import io
-from dataclasses import astuple, dataclass, fields
+from dataclasses import astuple, dataclass, fields, replace
 from pathlib import Path
 
 from irradia.core.errors import InputError
 from irradia.core.files import write_text_atomic
 from irradia.field.training.events import Stepped, SteppedBack, TrainEvent, Validated
+from irradia.field.training.figures import Figures
 
 N_ROWS = 200  # of losses over a training, about
 
@@ -39,6 +40,7 @@ class LogRow:
 
 
 COLUMNS = tuple(field.name for field in fields(LogRow))
+_FIGURES = ("psnr_db", "relmse", "mean_ratio", "mae")
 
 
 class TrainingLog:
@@ -64,13 +66,12 @@ class TrainingLog:
                 self._next = event.progress + 1.0 / N_ROWS
                 self._add()
         elif isinstance(event, Validated) and self._last is not None:
-            figures = event.figures
-            self._add((figures.psnr_db, figures.relmse, figures.mean_ratio, figures.mae))
+            self._add(event.figures)
         elif isinstance(event, SteppedBack):
             self.rows = [row for row in self.rows if row.step <= event.to_step]
             self._losses, self._rate_factor = [], event.rate_factor
 
-    def _add(self, figures: tuple[float | None, ...] = (None,) * 4) -> None:
+    def _add(self, figures: Figures | None = None) -> None:
         last = self._last
         if last is None:
             return
@@ -78,8 +79,10 @@ class TrainingLog:
             loss = sum(self._losses) / len(self._losses)
         else:  # a validation right after a row: it takes that row's place
             loss = self.rows.pop().loss
-        seconds = round(last.spent_s, 3)
-        self.rows.append(LogRow(last.step, seconds, last.samples, loss, *figures, self._rate_factor))
+        row = LogRow(last.step, round(last.spent_s, 3), last.samples, loss, rate_factor=self._rate_factor)
+        if figures is not None:
+            row = replace(row, **{name: getattr(figures, name) for name in _FIGURES})
+        self.rows.append(row)
         self._losses = []
 
 
@@ -109,9 +112,7 @@ def read_log(path: Path, up_to_step: int) -> list[LogRow]:
 
 
 def _row(line: dict[str, str]) -> LogRow:
-    figures = {
-        name: float(line[name]) if line[name] else None for name in ("psnr_db", "relmse", "mean_ratio", "mae")
-    }
+    figures = {name: float(line[name]) if line[name] else None for name in _FIGURES}
     return LogRow(
         int(line["step"]),
         float(line["seconds"]),

@@ -37,6 +37,7 @@ from irradia.field.training.start import inference_parameters
 MAX_SETBACKS = 3
 N_VALIDATIONS = 20
 N_LOSSES = 100  # that the last mean is over
+LEAST_GAIN = 1e-3  # of relMSE, for a validation to count as better
 
 
 @dataclass(frozen=True)
@@ -173,7 +174,7 @@ class Run:
         """Validates; notes whether it is the best so far."""
         parameters = inference_parameters(state, self._step_options)
         figures = self._figures(self._plan.judges.validation, parameters)
-        better = figures.relmse < self._course.best_relmse
+        better = figures.relmse < self._course.best_relmse * (1.0 - LEAST_GAIN)
         if better:
             self._course = replace(self._course, best_relmse=figures.relmse, n_worse=0)
             self._best = parameters if self._options.early_stop is not None else {}

@@ -33,11 +33,11 @@ def smoothed(
     Returns:
         (N, C).
     """
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
     n = len(positions)
     yield Working("Smooth samples", 0, n, "rows")
-    tree = cKDTree(positions)
+    tree = KDTree(positions)
     result = np.empty_like(values)
     for first in range(0, n, _CHUNK_ROWS):
         chunk = slice(first, min(first + _CHUNK_ROWS, n))

@@ -1,4 +1,4 @@
-"""Where training starts from: a field that is as bright as the samples, and grey of their colour.
+"""Where training starts from: a field that is as bright as the samples, and of their colour.
 
 Of random matrices alone, an ``exp`` head gives about 1, the top of the range, everywhere; the first hundred
 steps would go into darkening it.
@@ -18,18 +18,18 @@ from irradia.field.spec import FieldSpec, Head
 DARKEST = 1e-3  # of the frame's scale
 
 
-def starting_state(spec: FieldSpec, seed: Seed, options: StepOptions, mean: F32) -> TrainState:
+def starting_state(spec: FieldSpec, seed: Seed, options: StepOptions, typical: F32) -> TrainState:
     """A state before the first step.
 
     Args:
         spec: Of the field.
         seed: Of the random matrices.
         options: Say whether running means are kept.
-        mean: (n_outputs,) of the targets, in units of the frame's scale.
+        typical: (n_outputs,) target, in units of the frame's scale.
     """
     state = new_state(spec, seed, options)
     last = f"mlp.{spec.n_hidden_layers}.bias"
-    return replace(state, parameters={**state.parameters, last: before_head(spec.head, mean)})
+    return replace(state, parameters={**state.parameters, last: before_head(spec.head, typical)})
 
 
 def state_of(parameters: Parameters, options: StepOptions) -> TrainState:

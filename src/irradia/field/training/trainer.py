@@ -13,6 +13,7 @@ from irradia.core.provenance import sha256_bytes
 from irradia.core.rng import Seed
 from irradia.field.backend import Backend, Parameters, Rates, TrainState
 from irradia.field.backends import backend as find_backend
+from irradia.field.checks import check_options
 from irradia.field.registry import spec_to_dict
 from irradia.field.spec import FieldFrame, FieldSpec
 from irradia.field.training.batches import BatchSource
@@ -81,6 +82,7 @@ def train(
     """
     options, context = options or TrainOptions(), context or TrainContext()
     check_fit(samples, spec)
+    check_options(spec, options.step_options())
     computing = context.backend
     if isinstance(computing, str):
         computing = find_backend(computing, spec)
@@ -121,8 +123,8 @@ def _start(spec: FieldSpec, options: TrainOptions, context: TrainContext, source
     if context.start is not None:
         return state_of(context.start, options.step_options())
     seed = Seed(options.seed).child("init")
-    mean = source.batch(0, _STARTING_SAMPLES, seed).target.mean(axis=0)
-    return starting_state(spec, seed, options.step_options(), mean)
+    typical = np.median(source.batch(0, _STARTING_SAMPLES, seed).target, axis=0)
+    return starting_state(spec, seed, options.step_options(), typical)
 
 
 def _warm_up(

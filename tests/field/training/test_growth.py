@@ -1,0 +1,86 @@
+"""Training while samples still come."""
+
+from __future__ import annotations
+
+import pytest
+
+from irradia.core.errors import InputError
+from irradia.field.training import (
+    Finished,
+    Remark,
+    Stepped,
+    TrainContext,
+    TrainOptions,
+    Working,
+    growth,
+    train,
+)
+from irradia.formats.samples import SampleWriter, open_samples
+
+
+@pytest.fixture(autouse=True)
+def impatient(monkeypatch):
+    monkeypatch.setattr(growth, "LOOK_EVERY_S", 0.0)
+    monkeypatch.setattr(growth, "_WAIT_S", 0.0)
+
+
+@pytest.fixture
+def writer(tmp_path, samples):
+    with SampleWriter(tmp_path / "box.samples", samples.info) as open_writer:
+        yield open_writer
+
+
+def test_rows_that_come_later_are_trained_on(writer, samples, spec, tmp_path):
+    writer.append(samples.rows[:200])
+    options = TrainOptions(steps=60, batch_size=64, validate_every=60)
+    told = []
+    context = TrainContext(backend="numpy")
+    for event in train(open_samples(tmp_path / "box.samples"), spec, options, context):
+        told.append(event)
+        if isinstance(event, Stepped) and event.step == 20:
+            writer.append(samples.rows[200:400])
+        if isinstance(event, Stepped) and event.step == 40:
+            writer.append(samples.rows[400:])
+            writer.close()
+    remarks = [event.text for event in told if isinstance(event, Remark)]
+    assert "Training from 400 samples, so far." in remarks
+    assert "Training from 600 samples, all there are." in remarks
+    assert isinstance(told[-1], Finished)
+    assert told[-1].n_samples > 550
+
+
+def test_a_few_more_rows_are_not_worth_reading_again(writer, samples, spec, tmp_path):
+    writer.append(samples.rows[:400])
+    told = []
+    context = TrainContext(backend="numpy")
+    options = TrainOptions(steps=20, batch_size=64)
+    for event in train(open_samples(tmp_path / "box.samples"), spec, options, context):
+        told.append(event)
+        if isinstance(event, Stepped) and event.step == 5:
+            writer.append(samples.rows[400:450])
+    assert not any(isinstance(event, Remark) and "Training from" in event.text for event in told)
+
+
+def test_training_waits_for_the_first_batch(writer, samples, spec, tmp_path):
+    writer.append(samples.rows[:10])
+    waited = []
+    options = TrainOptions(steps=5, batch_size=256)
+    for event in train(open_samples(tmp_path / "box.samples"), spec, options, TrainContext(backend="numpy")):
+        if isinstance(event, Working) and event.stage == "Wait for samples":
+            waited.append(event.done)
+            writer.append(samples.rows[10 + 100 * len(waited) : 110 + 100 * len(waited)])
+    assert waited == [10.0, 110.0, 210.0]
+
+
+def test_a_dataset_that_was_given_up_is_trained_on_as_it_is(samples, finished, tmp_path):
+    writer = SampleWriter(tmp_path / "box.samples", samples.info)
+    writer.append(samples.rows[:200])
+    writer.abandon()
+    last = finished(open_samples(tmp_path / "box.samples"), TrainOptions(steps=5, batch_size=1024))
+    assert last.n_samples > 190
+
+
+def test_a_dataset_that_was_given_up_before_its_first_row_is_refused(samples, finished, tmp_path):
+    SampleWriter(tmp_path / "box.samples", samples.info).abandon()
+    with pytest.raises(InputError, match="found none"):
+        finished(open_samples(tmp_path / "box.samples"), TrainOptions(steps=5))
