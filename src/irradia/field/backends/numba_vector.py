@@ -245,6 +245,23 @@ store_uint8 = _storer(uint8, "Writes eight unsigned integers to a contiguous arr
 load2 = _loader(float2, "Two floats of a contiguous array from an index on.")
 store2 = _storer(float2, "Writes two floats to a contiguous array from an index on.")
 
+
+@intrinsic
+def touch(typing_context, array, index):
+    """Reads at an index so that its cache line comes near. A prefetch won't do: processors drop those."""
+
+    def emit(context, builder, signature, arguments):
+        of_array, of_index = signature.args
+        address = _address(context, builder, of_array, arguments[0], of_index, arguments[1], float8)
+        i32 = ir.IntType(32)
+        value = builder.load(builder.bitcast(address, i32.as_pointer()), align=4)
+        # An empty instruction that takes the value, so that the compiler can't leave the reading out.
+        builder.asm(ir.FunctionType(ir.VoidType(), [i32]), "", "r", [value], side_effect=True)
+        return context.get_dummy_value()
+
+    return types.void(array, index), emit
+
+
 # --- making and joining vectors --------------------------------------------------------------------------
 
 
