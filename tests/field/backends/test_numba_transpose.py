@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from irradia.field.backends.numba_compile import inner
 from irradia.field.backends.numba_transpose import transpose8
-from irradia.field.backends.numba_vector import inner, load8, store8
+from irradia.field.backends.numba_vector import load8, store8
 
 
 @inner

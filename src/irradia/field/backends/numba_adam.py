@@ -11,7 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from irradia.field.backend import F32, AdamOptions
-from irradia.field.backends.numba_vector import LANES, inner, load8, select, splat8, square_root, store8
+from irradia.field.backends.numba_compile import inner
+from irradia.field.backends.numba_vector import load8, select, splat8, square_root, store8
+from irradia.field.backends.numba_vector_type import LANES
 
 
 class Learned(NamedTuple):

@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
+from irradia.field.backends.numba_compile import inner, kernel, take
 from irradia.field.backends.numba_encoding import F32, TILE, NumbaEncoding
 from irradia.field.backends.numba_identity import copy_points
 from irradia.field.backends.numba_math import sin_cos_of_quadrant
-from irradia.field.backends.numba_vector import (
-    LANES,
-    inner,
-    kernel,
-    load8,
-    nearest,
-    store8,
-    take,
-    whole8,
-)
+from irradia.field.backends.numba_vector import load8, nearest, store8, whole8
+from irradia.field.backends.numba_vector_type import LANES
 from irradia.field.encodings import Frequency
 
 _HALF_PI = 1.5707963267948966

@@ -11,9 +11,10 @@ from typing import get_args
 from irradia.core.colour import LUMINANCE_WEIGHTS
 from irradia.field import activations, heads, losses
 from irradia.field.backend import LossName
+from irradia.field.backends.numba_compile import inner
 from irradia.field.backends.numba_encoding import TILE
 from irradia.field.backends.numba_math import exp8, log8, sin_cos8
-from irradia.field.backends.numba_vector import absolute, inner, lane, load8, select, splat8, store8
+from irradia.field.backends.numba_vector import absolute, lane, load8, select, splat8, store8
 from irradia.field.spec import ActivationName, Head
 
 # How much of a sum below 0 goes through, for activations that are straight on either side of 0.

@@ -17,14 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.field.backends.numba_adam import Adam, Learned, adam_sweep
+from irradia.field.backends.numba_compile import inner, kernel, take
 from irradia.field.backends.numba_encoding import F32, TILE, NumbaEncoding
 from irradia.field.backends.numba_team import Team
 from irradia.field.backends.numba_vector import (
     floor,
     fma,
-    inner,
     join2,
-    kernel,
     lane,
     load2,
     load8,
@@ -35,7 +34,6 @@ from irradia.field.backends.numba_vector import (
     store2,
     store8,
     store_uint8,
-    take,
     touch,
     whole8,
 )
@@ -142,7 +140,8 @@ def _forward(thread, next_task, points, table, features, row, levels, entries, w
             break
         own = _table_of(level, table, levels)
         if step < _PIECES:
-            _bring(own, step, _PIECES)
+            if n_tiles * TILE * _CORNERS > len(own) // _LINE:  # more jumps than lines
+                _bring(own, step, _PIECES)
             continue
         first_row = row + level * n_features
         first_tile = (step - _PIECES) * _RUN

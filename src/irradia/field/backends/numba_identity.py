@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from irradia.field.backends.numba_compile import inner, kernel, take
 from irradia.field.backends.numba_encoding import F32, TILE, NumbaEncoding
-from irradia.field.backends.numba_vector import LANES, inner, kernel, load8, store8, take
+from irradia.field.backends.numba_vector import load8, store8
+from irradia.field.backends.numba_vector_type import LANES
 from irradia.field.encodings import Identity
 
 

@@ -7,7 +7,8 @@ NaN comes out where NaN goes in.
 
 from __future__ import annotations
 
-from irradia.field.backends.numba_vector import bits8, inner, of_bits8, real8, select
+from irradia.field.backends.numba_compile import inner
+from irradia.field.backends.numba_vector import bits8, of_bits8, real8, select
 
 _LOG2_E = 1.4426950408889634
 # ln 2 and π/2 in parts with few enough bits that whole multiples of the first ones are exact.

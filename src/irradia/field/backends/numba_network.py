@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from irradia.field.backend import F32, Parameters
 from irradia.field.backends.numba_adam import adam_sweep
+from irradia.field.backends.numba_compile import inner, kernel, take
 from irradia.field.backends.numba_encoding import STRIDE, TILE
 from irradia.field.backends.numba_functions import (
     CURVES,
@@ -26,7 +27,7 @@ from irradia.field.backends.numba_functions import (
     transpose_target,
 )
 from irradia.field.backends.numba_tiles import ROWS, add_products, add_row_sums, multiply
-from irradia.field.backends.numba_vector import inner, kernel, load8, splat8, store8, take
+from irradia.field.backends.numba_vector import load8, splat8, store8
 from irradia.field.spec import FieldSpec
 
 # Gradients are summed over so many runs of tiles, then over the runs in order: as many as threads can share,

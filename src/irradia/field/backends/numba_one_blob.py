@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from irradia.field.backends.numba_compile import inner, kernel, take
 from irradia.field.backends.numba_encoding import F32, TILE, NumbaEncoding
-from irradia.field.backends.numba_vector import LANES, fma, inner, kernel, load8, select, splat8, store8, take
+from irradia.field.backends.numba_vector import fma, load8, select, splat8, store8
+from irradia.field.backends.numba_vector_type import LANES
 from irradia.field.encodings import OneBlob
 
 

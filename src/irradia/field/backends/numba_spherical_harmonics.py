@@ -6,9 +6,11 @@ import math
 
 import numpy as np
 
+from irradia.field.backends.numba_compile import inner, kernel, take
 from irradia.field.backends.numba_encoding import F32, TILE, NumbaEncoding
 from irradia.field.backends.numba_team import Team
-from irradia.field.backends.numba_vector import LANES, inner, kernel, load8, splat8, store8, take
+from irradia.field.backends.numba_vector import load8, splat8, store8
+from irradia.field.backends.numba_vector_type import LANES
 from irradia.field.encodings import SphericalHarmonics
 from irradia.field.encodings.spherical_harmonics import normalisation
 

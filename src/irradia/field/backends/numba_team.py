@@ -43,7 +43,7 @@ class Team:
         """Calls ``kernel(thread, next_task, *arguments)`` on every thread and waits for all.
 
         Args:
-            kernel: Compiled by :func:`irradia.field.backends.numba_vector.kernel`; takes its tasks by
+            kernel: Compiled by :func:`irradia.field.backends.numba_compile.kernel`; takes its tasks by
                 ``take(next_task)``, and may use scratch memory that belongs to number ``thread``.
             arguments: Arrays, numbers and named tuples of them.
         """

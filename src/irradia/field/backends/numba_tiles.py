@@ -10,8 +10,9 @@ less, but spill.
 
 from __future__ import annotations
 
+from irradia.field.backends.numba_compile import inner
 from irradia.field.backends.numba_encoding import TILE
-from irradia.field.backends.numba_vector import fma, inner, load8, select, splat8, store8, sums8
+from irradia.field.backends.numba_vector import fma, load8, select, splat8, store8, sums8
 
 ROWS = 4  # of a block
 _PAIR = 16  # samples in two registers

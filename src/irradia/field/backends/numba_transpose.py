@@ -9,7 +9,8 @@ from __future__ import annotations
 from llvmlite import ir
 from numba import types
 
-from irradia.field.backends.numba_vector import LANES, float8, intrinsic
+from irradia.field.backends.numba_compile import intrinsic
+from irradia.field.backends.numba_vector_type import LANES, float8
 
 # Lanes of two vectors, of the second from 8 on. Each step stays within halves of four lanes, as the cheap
 # shuffles do, but the last.

@@ -16,24 +16,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.field.backends.numba_adam import Adam, Learned, adam_sweep
+from irradia.field.backends.numba_compile import inner, kernel, take
 from irradia.field.backends.numba_encoding import F32, TILE, NumbaEncoding
 from irradia.field.backends.numba_team import Team
 from irradia.field.backends.numba_transpose import transpose8
 from irradia.field.backends.numba_vector import (
-    LANES,
     floor,
     fma,
-    inner,
-    kernel,
     load8,
     rounded_product,
     select,
     splat8,
     store8,
     store_uint8,
-    take,
     whole8,
 )
+from irradia.field.backends.numba_vector_type import LANES
 from irradia.field.encodings import TriPlane
 from irradia.field.encodings.tri_plane import PLANES
 

@@ -8,191 +8,26 @@ many steps. So kernels say what stands in a register::
 ``+ - * /``, comparisons, and for integers ``& ^ << >>`` work lane by lane, and a number beside a vector is
 spread over its lanes. Without AVX, LLVM halves the vectors. Products and sums may be fused; nothing else is
 rearranged, and NaN stays NaN.
-
-Also here: how kernels are compiled, and how the threads of a team share tasks.
 """
 
 from __future__ import annotations
 
-import operator
-from collections.abc import Callable
-from hashlib import sha256
-from pathlib import Path
 from typing import Any, cast
 
 from llvmlite import ir
-from numba import njit, types
+from numba import types
 from numba.core import cgutils
-from numba.extending import intrinsic as numba_intrinsic
-from numba.extending import lower_builtin, models, register_model, type_callable
 
-LANES = 8
-
-
-def _stamp() -> bytes:
-    """Changes with any of the kernels' files."""
-    files = sorted(Path(__file__).parent.glob("numba_*.py"))
-    return sha256(b"".join(file.read_bytes() for file in files)).digest()
-
-
-_STAMP = _stamp()
-
-
-def _compiled(function: Callable, *, nogil: bool) -> Any:
-    """Compiles when first called, and keeps the code on disk.
-
-    Numba takes that code for fresh as long as the function's own file hasn't changed. Ours holds functions
-    of other files too, so all of them count.
-    """
-    dispatcher: Any = njit(cache=True, nogil=nogil, error_model="numpy")(function)
-    dispatcher._cache._cache_file._source_stamp = _STAMP
-    return dispatcher
-
-
-def kernel(function: Callable) -> Any:
-    """Makes what a team runs, so without Python's lock: ``kernel(thread, next_task, ...)``."""
-    return _compiled(function, nogil=True)
-
-
-def inner(function: Callable) -> Any:
-    """Makes what kernels call."""
-    return _compiled(function, nogil=False)
-
-
-def intrinsic(emitter: Callable) -> Any:
-    """As Numba's, whose types would have it called with what Numba calls it with."""
-    return numba_intrinsic(emitter)
-
-
-_CONTRACT = ("contract",)  # a·b + c may round once
-
-
-class Vector(types.Type):
-    """Numba's type of a few numbers in one register.
-
-    Attributes:
-        element: Numba's type of each.
-        lanes: How many.
-    """
-
-    def __init__(self, element: types.Type, lanes: int) -> None:
-        self.element = element
-        self.lanes = lanes
-        super().__init__(name=f"{element}x{lanes}")
-
-
-float8 = Vector(types.float32, LANES)
-uint8 = Vector(types.uint32, LANES)
-mask8 = Vector(types.boolean, LANES)
-float2 = Vector(types.float32, 2)
-
-_LLVM_ELEMENT = {types.float32: ir.FloatType(), types.uint32: ir.IntType(32), types.boolean: ir.IntType(1)}
-
-
-def _llvm(vector: Vector) -> ir.VectorType:
-    return ir.VectorType(_LLVM_ELEMENT[vector.element], vector.lanes)
-
-
-@register_model(Vector)
-class _VectorModel(models.PrimitiveModel):
-    def __init__(self, dmm: Any, fe_type: Vector) -> None:
-        super().__init__(dmm, fe_type, _llvm(fe_type))
-
-
-# --- operators -------------------------------------------------------------------------------------------
-
-
-def _wide(context, builder, value, found, vector):
-    """A number as the vector that it is used with; vectors as they are."""
-    if isinstance(found, Vector):
-        return value
-    value = context.cast(builder, value, found, vector.element)
-    return _spread(builder, value, _llvm(vector))
-
-
-def _spread(builder, value, vector):
-    one = builder.insert_element(ir.Constant(vector, ir.Undefined), value, ir.Constant(ir.IntType(32), 0))
-    zeros = ir.Constant(ir.VectorType(ir.IntType(32), vector.count), None)
-    return builder.shuffle_vector(one, ir.Constant(vector, ir.Undefined), zeros)
-
-
-def _operator(function: Callable, emit: Callable, result: Callable[[Vector], Vector]) -> None:
-    """Teaches Numba a binary operator between vectors, or a vector and a number."""
-
-    @type_callable(function)
-    def of_types(context):
-        def typer(a, b):
-            vectors = [t for t in (a, b) if isinstance(t, Vector)]
-            numbers = [t for t in (a, b) if isinstance(t, types.Number)]
-            if vectors and len(vectors) + len(numbers) == 2 and vectors[0] == vectors[-1]:
-                return result(vectors[0])
-            return None
-
-        return typer
-
-    def lower(context, builder, signature, arguments):
-        vector = next(t for t in signature.args if isinstance(t, Vector))
-        a, b = (
-            _wide(context, builder, value, found, vector)
-            for value, found in zip(arguments, signature.args, strict=True)
-        )
-        return emit(builder, a, b, vector.element)
-
-    for pair in ((Vector, Vector), (Vector, types.Number), (types.Number, Vector)):
-        lower_builtin(function, *pair)(lower)
-
-
-def _arithmetic(of_floats: str, of_integers: str | None) -> Callable:
-    def emit(builder, a, b, element):
-        if element == types.float32:
-            return getattr(builder, of_floats)(a, b, flags=_CONTRACT)
-        if of_integers is None:
-            raise TypeError(f"no {of_floats} of integers")
-        return getattr(builder, of_integers)(a, b)
-
-    return emit
-
-
-def _comparison(symbol: str) -> Callable:
-    def emit(builder, a, b, element):
-        if element == types.float32:
-            return builder.fcmp_ordered(symbol, a, b)  # false where either is NaN
-        return builder.icmp_unsigned(symbol, a, b)
-
-    return emit
-
-
-def _of_integers(name: str) -> Callable:
-    return lambda builder, a, b, element: getattr(builder, name)(a, b)
-
-
-def _same(vector: Vector) -> Vector:
-    return vector
-
-
-for _function, _floats, _integers in (
-    (operator.add, "fadd", "add"),
-    (operator.sub, "fsub", "sub"),
-    (operator.mul, "fmul", "mul"),
-    (operator.truediv, "fdiv", None),
-):
-    _operator(_function, _arithmetic(_floats, _integers), _same)
-for _function, _symbol in (
-    (operator.lt, "<"),
-    (operator.gt, ">"),
-    (operator.le, "<="),
-    (operator.ge, ">="),
-    (operator.eq, "=="),
-):
-    _operator(_function, _comparison(_symbol), lambda vector: mask8)
-for _function, _name in (
-    (operator.and_, "and_"),
-    (operator.xor, "xor"),
-    (operator.lshift, "shl"),
-    (operator.rshift, "lshr"),
-):
-    _operator(_function, _of_integers(_name), _same)
-
+from irradia.field.backends.numba_compile import intrinsic
+from irradia.field.backends.numba_vector_type import (
+    LANES,
+    Vector,
+    float2,
+    float8,
+    llvm_type,
+    uint8,
+    widened,
+)
 
 # --- memory ----------------------------------------------------------------------------------------------
 
@@ -208,7 +43,7 @@ def _address(context, builder, array_type, array, index_type, index, vector):
     ]
     array = context.make_array(array_type)(context, builder, array)
     item = cgutils.get_item_pointer(context, builder, array_type, array, values, wraparound=False)
-    return builder.bitcast(item, _llvm(vector).as_pointer())
+    return builder.bitcast(item, llvm_type(vector).as_pointer())
 
 
 def _loader(vector: Vector, summary: str) -> Any:
@@ -268,7 +103,7 @@ def touch(typing_context, array, index):
 def _splatter(vector: Vector, summary: str) -> Any:
     def splat(typing_context, value):
         def emit(context, builder, signature, arguments):
-            return _wide(context, builder, arguments[0], signature.args[0], vector)
+            return widened(context, builder, arguments[0], signature.args[0], vector)
 
         return (vector(value), emit) if isinstance(value, types.Number) else None
 
@@ -326,7 +161,7 @@ def rounded_product(typing_context, a, b):
     """Each lane of ``a`` times the number ``b``, rounded before anything is added to it."""
 
     def emit(context, builder, signature, arguments):
-        return builder.fmul(arguments[0], _wide(context, builder, arguments[1], signature.args[1], a))
+        return builder.fmul(arguments[0], widened(context, builder, arguments[1], signature.args[1], a))
 
     return a(a, b), emit
 
@@ -336,7 +171,7 @@ def join2(typing_context, a, b):
     """Two floats side by side."""
 
     def emit(context, builder, signature, arguments):
-        vector = ir.Constant(_llvm(float2), ir.Undefined)
+        vector = ir.Constant(llvm_type(float2), ir.Undefined)
         for i, value in enumerate(arguments):
             vector = builder.insert_element(vector, value, ir.Constant(ir.IntType(32), i))
         return vector
@@ -352,8 +187,8 @@ def select(typing_context, condition, a, b):
     def emit(context, builder, signature, arguments):
         _, of_a, of_b = signature.args
         if isinstance(result, Vector):
-            yes = _wide(context, builder, arguments[1], of_a, result)
-            no = _wide(context, builder, arguments[2], of_b, result)
+            yes = widened(context, builder, arguments[1], of_a, result)
+            no = widened(context, builder, arguments[2], of_b, result)
         else:
             yes = context.cast(builder, arguments[1], of_a, result)
             no = context.cast(builder, arguments[2], of_b, result)
@@ -365,7 +200,7 @@ def select(typing_context, condition, a, b):
 def _converter(source: Vector, target: Vector, instruction: str, summary: str) -> Any:
     def convert(typing_context, value):
         def emit(context, builder, signature, arguments):
-            return getattr(builder, instruction)(arguments[0], _llvm(target))
+            return getattr(builder, instruction)(arguments[0], llvm_type(target))
 
         return (target(value), emit) if value == source else None
 
@@ -416,17 +251,3 @@ def lane(typing_context, vector, index):
         return builder.extract_element(arguments[0], builder.trunc(arguments[1], ir.IntType(32)))
 
     return (vector.element(vector, types.intp), emit) if isinstance(vector, Vector) else None
-
-
-# --- threads ---------------------------------------------------------------------------------------------
-
-
-@intrinsic
-def take(typing_context, counter):
-    """Counts up the (1,) int64 array by one, for all threads at once, and returns what it was."""
-
-    def emit(context, builder, signature, arguments):
-        array = context.make_array(signature.args[0])(context, builder, arguments[0])
-        return builder.atomic_rmw("add", array.data, ir.Constant(ir.IntType(64), 1), "monotonic")
-
-    return types.int64(counter), emit
