@@ -135,32 +135,57 @@ def run_sampling(job: SampleJob, progress: Progress) -> dict[str, Any]:
         InputError: Something in the file or among the options is wrong.
     """
     from irradia.bake.datasets import set_up
-    from irradia.formats.samples import validation_path
     from irradia.transport import use_device
 
     use_device(job.device, job.threads)
     scene, lightmap, inputs = open_lit_scene(job, progress)
     setting = set_up(scene, job.options, lightmap, progress)
-    stop = _Stop()
-    made: dict[str, Any] = {}
-    with asks_first(stop.ask, progress.say):
-        if job.validation:
-            path = validation_path(job.out.with_suffix(".samples"))
-            options = job.options.for_validation(job.validation)
-            tally = _write(path, setting, options, _VALIDATION, _origin(job, inputs), progress, stop)
-            made["validation"] = tally.to_dict(options.samples)
-        if not stop.asked:
-            tally = _write(job.out, setting, job.options, _TRAIN, _origin(job, inputs), progress, stop)
-            made.update(tally.to_dict(job.options.samples))
+    made = write_datasets(job.out, setting, job.options, job.validation, _origin(job, inputs), progress)
     return {
         "scene": scene.name,
         "kind": job.options.placement,
         "quantity": job.options.quantity,
         "integrator": job.options.integrator,
         **made,
-        "complete": not stop.asked,
         "stage_s": {name: round(seconds, 4) for name, seconds in progress.seconds.items()},
     }
+
+
+def write_datasets(
+    out: Path,
+    setting: Setting,
+    options: SampleOptions,
+    n_validation: int,
+    origin: Mapping[str, Any],
+    progress: Progress,
+) -> dict[str, Any]:
+    """Writes a dataset to ``out``, and before it NAME.validation.samples; the first Ctrl-C ends it early.
+
+    Args:
+        out: A ``.samples`` or ``.bin``.
+        setting: The scene.
+        options: Which points.
+        n_validation: How many the second file has; 0 for none.
+        origin: The files' provenance.
+        progress: Shows the stages "samples for validation" and "samples".
+
+    Returns:
+        What was made and how fast, plain values.
+    """
+    from irradia.formats.samples import validation_path
+
+    stop = _Stop()
+    made: dict[str, Any] = {}
+    with asks_first(stop.ask, progress.say):
+        if n_validation:
+            path = validation_path(out.with_suffix(".samples"))
+            better = options.for_validation(n_validation)
+            tally = _write(path, setting, better, _VALIDATION, origin, progress, stop)
+            made["validation"] = tally.to_dict(better.samples)
+        if not stop.asked:
+            tally = _write(out, setting, options, _TRAIN, origin, progress, stop)
+            made.update(tally.to_dict(options.samples))
+    return {**made, "complete": not stop.asked}
 
 
 def open_lit_scene(job: SampleJob, progress: Progress) -> tuple[Scene, BakedPages | None, dict[str, str]]:

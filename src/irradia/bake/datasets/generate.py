@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 ON_SURFACES = 0.2
 """Share of a volume's points that lie on surfaces, under their normals (Coomans et al. 2026)."""
 
-_RAYS_PER_LAUNCH = 1 << 21
+_RAYS_PER_LAUNCH = {"cpu": 1 << 21, "cuda": 1 << 26}
 _FEWEST_POINTS = 1 << 8  # of a launch, however many samples each has
 
 
@@ -94,7 +94,9 @@ def expected_points(setting: Setting, options: SampleOptions) -> int:
 
 def points_per_launch(n_samples: int) -> int:
     """So that every launch traces about as many rays, and none is long."""
-    return max(_RAYS_PER_LAUNCH // (2 * n_samples), _FEWEST_POINTS)
+    from irradia.transport.backend import device
+
+    return max(_RAYS_PER_LAUNCH[device.kind] // (2 * n_samples), _FEWEST_POINTS)
 
 
 def _box(setting: Setting, options: SampleOptions) -> F64:

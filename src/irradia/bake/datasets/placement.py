@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
 
-_FEW_RAYS, _MANY_RAYS = 16, 64
+_FEW_RAYS, _MANY_RAYS = 8, 64
 _MOSTLY = 0.5
 
 
@@ -173,14 +173,13 @@ def _free(world: World, positions: F64, normals: F64) -> Receivers:
 
 
 def _inside(world: World, places: Receivers, most: float, *, all_round: bool) -> NDArray[np.bool_]:
-    """(N,) whether more than the share ``most`` of rays meet backs: a few say no, more are asked if not."""
+    """(N,) whether more than the share ``most`` of rays meet backs: a few decide where they agree."""
     from irradia.transport.point_light import share_of_backs
 
-    suspect = np.flatnonzero(share_of_backs(world, places, _FEW_RAYS, all_round=all_round) > 0.0)
-    share = share_of_backs(world, places.take(suspect), _MANY_RAYS, all_round=all_round)
-    inside = np.zeros(len(places), np.bool_)
-    inside[suspect[share > most]] = True
-    return inside
+    share = share_of_backs(world, places, _FEW_RAYS, all_round=all_round)
+    unsure = np.flatnonzero((share > 0.0) & (share < 1.0))
+    share[unsure] = share_of_backs(world, places.take(unsure), _MANY_RAYS, all_round=all_round)
+    return share > most
 
 
 def _coprime_near_golden_ratio(n: int) -> int:
