@@ -44,6 +44,15 @@ def test_activations_neither_vanish_nor_explode_through_six_layers(activation, r
     assert 0.2 < sizes[-1] / sizes[0] < 2.0 or (activation == "sine" and 0.5 < sizes[-1] < 2.0)
 
 
+def test_the_first_sines_are_slower_on_features_that_cannot_adapt():
+    def largest(encoding):
+        spec = FieldSpec(encoding, Identity(), activation="sine")
+        return np.abs(new_parameters(spec, Seed(1))["mlp.0.weight"]).max()
+
+    assert largest(TriPlane(4, 16)) == pytest.approx(30 / 51, rel=0.01)
+    assert largest(OneBlob(16)) == pytest.approx(10 / 51, rel=0.01)
+
+
 def test_a_training_begins_with_moments_and_means_of_zero():
     spec = FieldSpec(TriPlane(4, 1), Identity(), 8, 1)
     state = new_state(spec, Seed(1))

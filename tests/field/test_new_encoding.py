@@ -15,7 +15,8 @@ from irradia.field.backends import backend
 from irradia.field.encoding import Array, Encoding, TensorSlot
 from irradia.field.encodings import Identity
 from irradia.field.field import Field
-from irradia.field.init import new_state
+from irradia.field.files import load_field, save_field
+from irradia.field.init import new_parameters, new_state
 from irradia.field.registry import ENCODINGS, print_spec, read_spec, register
 from irradia.field.spec import FieldFrame, FieldSpec
 
@@ -73,3 +74,13 @@ def test_a_new_encoding_trains_and_evaluates(spec, make_batch):
 def test_a_new_encoding_is_printed_and_read(spec):
     assert read_spec(print_spec(spec)) == spec
     assert '"type": "ladder"' in print_spec(spec)
+
+
+def test_a_new_encoding_is_saved_and_loaded(spec, tmp_path, rng):
+    frame = FieldFrame(np.float32([[0, 0, 0], [1, 1, 1]]))
+    saved = Field(spec, frame, new_parameters(spec, Seed(1)))
+    save_field(tmp_path / "ladder.safetensors", saved, precision="fp32")
+    loaded = load_field(tmp_path / "ladder.safetensors")
+    positions, normals = rng.random((4, 3), np.float32), np.float32([[0, 1, 0]] * 4)
+    assert loaded.spec == spec
+    np.testing.assert_array_equal(loaded.irradiance(positions, normals), saved.irradiance(positions, normals))

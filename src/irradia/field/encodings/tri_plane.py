@@ -61,8 +61,8 @@ class TriPlane(Encoding):
         return (TensorSlot("planes", (len(PLANES), self.resolution, self.resolution, self.n_features)),)
 
     def init(self, rng: np.random.Generator) -> NDArray[np.float32]:
-        """Uniform in ±0.1."""
-        return rng.uniform(-0.1, 0.1, self.n_parameters).astype(np.float32)
+        """Uniform in ±0.01, which of 1e-4 to 1 learnt hard shadows best; 1 ended with 2.5 times the error."""
+        return rng.uniform(-0.01, 0.01, self.n_parameters).astype(np.float32)
 
     def forward(self, x: Array, parameters: Array) -> Array:
         """Interpolated features (N, 3 · features)."""
