@@ -147,10 +147,10 @@ def _forward(thread, next_task, points, table, features, row, levels, entries, w
         first_tile = (step - _PIECES) * _RUN
         for tile in range(first_tile, min(first_tile + _RUN, n_tiles)):
             _corners(points, tile * TILE, levels, level, entry, weight)
-            if n_features == 2:
-                _gather_pairs(own, entry, weight, features[tile], first_row)
+            if n_features == 2:  # the usual, compiled for it
+                _gather(own, entry, weight, 2, features[tile], first_row)
             else:
-                _gather(own, entry, weight, features[tile], first_row, n_features)
+                _gather(own, entry, weight, n_features, features[tile], first_row)
 
 
 @inner
@@ -214,23 +214,21 @@ def _cell(x, scale, offset):
 
 
 @inner
-def _gather_pairs(table, entry, weight, features, row):
+def _gather(table, entry, weight, n_features, features, row):
+    """Interpolates a tile's features of one level, two at a time."""
     for s in range(TILE):
-        pair = splat2(0.0)
-        for corner in range(_CORNERS):
-            pair = fma(splat2(weight[corner, s]), load2(table, 2 * np.int64(entry[corner, s])), pair)
-        features[row, s] = lane(pair, 0)
-        features[row + 1, s] = lane(pair, 1)
-
-
-@inner
-def _gather(table, entry, weight, features, row, n_features):
-    for s in range(TILE):
-        for f in range(n_features):
-            total = np.float32(0.0)
+        for f in range(0, n_features - 1, 2):
+            pair = splat2(0.0)
             for corner in range(_CORNERS):
-                total += weight[corner, s] * table[np.int64(entry[corner, s]) * n_features + f]
-            features[row + f, s] = total
+                at = np.int64(entry[corner, s]) * n_features + f
+                pair = fma(splat2(weight[corner, s]), load2(table, at), pair)
+            features[row + f, s] = lane(pair, 0)
+            features[row + f + 1, s] = lane(pair, 1)
+        if n_features % 2:
+            last, total = n_features - 1, np.float32(0.0)
+            for corner in range(_CORNERS):
+                total += weight[corner, s] * table[np.int64(entry[corner, s]) * n_features + last]
+            features[row + last, s] = total
 
 
 @kernel
@@ -260,26 +258,24 @@ def _learn(thread, next_task, points, gradients, row, learned, adam, levels, ent
         for tile in range(gradients.shape[0]):
             _corners(points, tile * TILE, levels, level, entry, weight)
             if n_features == 2:
-                _scatter_pairs(gradient, entry, weight, gradients[tile], first_row)
+                _scatter(gradient, entry, weight, 2, gradients[tile], first_row)
             else:
-                _scatter(gradient, entry, weight, gradients[tile], first_row, n_features)
+                _scatter(gradient, entry, weight, n_features, gradients[tile], first_row)
         size = levels.n_entries[level] * n_features
         adam_sweep(learned, levels.first[level] * n_features, size, gradient, adam)
 
 
 @inner
-def _scatter_pairs(table, entry, weight, gradients, row):
+def _scatter(table, entry, weight, n_features, gradients, row):
+    """Adds a tile's gradients of one level to its corners, the other way round."""
     for s in range(TILE):
-        pair = join2(gradients[row, s], gradients[row + 1, s])
-        for corner in range(_CORNERS):
-            at = 2 * np.int64(entry[corner, s])
-            store2(table, at, fma(splat2(weight[corner, s]), pair, load2(table, at)))
-
-
-@inner
-def _scatter(table, entry, weight, gradients, row, n_features):
-    for s in range(TILE):
-        for corner in range(_CORNERS):
-            at = np.int64(entry[corner, s]) * n_features
-            for f in range(n_features):
-                table[at + f] += weight[corner, s] * gradients[row + f, s]
+        for f in range(0, n_features - 1, 2):
+            pair = join2(gradients[row + f, s], gradients[row + f + 1, s])
+            for corner in range(_CORNERS):
+                at = np.int64(entry[corner, s]) * n_features + f
+                store2(table, at, fma(splat2(weight[corner, s]), pair, load2(table, at)))
+        if n_features % 2:
+            last = n_features - 1
+            for corner in range(_CORNERS):
+                at = np.int64(entry[corner, s]) * n_features + last
+                table[at] += weight[corner, s] * gradients[row + last, s]

@@ -18,15 +18,6 @@ import numpy as np
 
 from irradia.core.device import available_threads
 
-_default: int | None = None
-
-
-def set_default_threads(n_threads: int | None) -> None:
-    """How many threads teams have from now on that aren't told; None: all that this process may use."""
-    global _default  # noqa: PLW0603  set once by a command from --threads
-    _default = n_threads
-
-
 class Team:
     """A fixed number of threads, the caller among them. One caller at a time.
 
@@ -35,7 +26,7 @@ class Team:
     """
 
     def __init__(self, n_threads: int | None = None) -> None:
-        self.n_threads = n_threads or _default or available_threads()
+        self.n_threads = n_threads or available_threads()
         self._helpers = ThreadPoolExecutor(max(self.n_threads - 1, 1), thread_name_prefix="irradia-field")
         self._next_task = np.zeros(1, np.int64)
 
