@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from irradia.field.adam import adam, inference_parameters, running_mean
+from irradia.field.adam import adam, running_mean
 from irradia.field.backend import AdamOptions, StepOptions, TrainState
+from irradia.field.training.start import inference_parameters
 
 PLAIN = AdamOptions(beta1=0.5, beta2=0.75, epsilon=0.0)
 

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from irradia.core.rng import Seed
-from irradia.field.adam import inference_parameters
 from irradia.field.backend import Rates, StepOptions
 from irradia.field.backends import backend
 from irradia.field.encoding import Array, Encoding, TensorSlot
@@ -19,6 +18,7 @@ from irradia.field.files import load_field, save_field
 from irradia.field.init import new_parameters, new_state
 from irradia.field.registry import ENCODINGS, print_spec, read_spec, register
 from irradia.field.spec import FieldFrame, FieldSpec
+from irradia.field.training.start import inference_parameters
 
 
 @dataclass(frozen=True)

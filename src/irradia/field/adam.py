@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from irradia.field.backend import AdamOptions, Parameters, StepOptions, TrainState
+from irradia.field.backend import AdamOptions
 from irradia.field.encoding import Array
 
 
@@ -44,19 +44,8 @@ def adam(
 
 
 def running_mean(mean: Array, value: Array, decay: float) -> Array:
-    """The mean with one more value in it; it starts from 0 and is biased toward it."""
-    return decay * mean + (1.0 - decay) * value
+    """The mean with one more value in it; it starts from 0 and is biased toward it.
 
-
-def inference_parameters(state: TrainState, options: StepOptions) -> Parameters:
-    """What to evaluate and ship: de-biased running means, and frozen parameters as they are.
-
-    Without means, or before the first step, the parameters themselves.
+    :func:`irradia.field.training.start.inference_parameters` takes the bias away.
     """
-    if not state.average or state.step == 0:
-        return dict(state.parameters)
-    weight = np.float32(1.0 - options.average**state.step)
-    return {
-        name: value if name in options.frozen else state.average[name] / weight
-        for name, value in state.parameters.items()
-    }
+    return decay * mean + (1.0 - decay) * value
