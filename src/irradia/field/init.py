@@ -10,8 +10,8 @@ from irradia.core.rng import Seed
 from irradia.field.backend import F32, Parameters, StepOptions, TrainState
 from irradia.field.spec import FieldSpec
 
-# ω₀ of Sitzmann et al. 2020, who feed raw coordinates. It suits features that learn, as they start small. With
-# 30, frequencies, which are large from the start, had ten times the error after 200 steps.
+# ω₀ of Sitzmann et al. 2020, who feed raw coordinates. It suits features that learn, as they start small.
+# With 30, frequencies, which are large from the start, had ten times the error after 200 steps.
 SINE_FREQUENCY = 30.0
 SINE_FREQUENCY_OF_FIXED = 10.0
 
