@@ -17,15 +17,22 @@ from typing import Any
 import numpy as np
 
 from irradia.core.device import available_threads
+from irradia.core.errors import InputError
+
 
 class Team:
     """A fixed number of threads, the caller among them. One caller at a time.
 
     Attributes:
         n_threads: How many run each kernel.
+
+    Raises:
+        InputError: On a number below 1.
     """
 
     def __init__(self, n_threads: int | None = None) -> None:
+        if n_threads is not None and n_threads < 1:
+            raise InputError(f"expected at least 1 thread, found {n_threads}", where="--threads")
         self.n_threads = n_threads or available_threads()
         self._helpers = ThreadPoolExecutor(max(self.n_threads - 1, 1), thread_name_prefix="irradia-field")
         self._next_task = np.zeros(1, np.int64)
@@ -45,4 +52,5 @@ class Team:
             kernel(0, self._next_task, *arguments)
         finally:
             for call in running:
-                call.result()
+                if not call.cancel():  # one that hasn't begun would find no task left
+                    call.result()
