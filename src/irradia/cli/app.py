@@ -21,7 +21,7 @@ _INTERRUPTED = "stopped; files already finished are whole, run again to go on"
 # Name: module below irradia.cli, one line for the list. The module holds ``command``.
 COMMANDS: dict[str, tuple[str, str]] = {
     "doctor": ("doctor", "What this machine can run, and how to mend what it can't."),
-    "demo": ("demo", "Bake a scene of our own, with report."),
+    "demo": ("demo", "Bake a scene of our own and train a field from it, with report."),
     "info": ("info", "What is in a scene and what the bake will do with it."),
     "bake": ("bake", "Bake a scene's lightmaps, with baked .glb and report."),
     "merge": ("merge", "Join the shards of one bake."),

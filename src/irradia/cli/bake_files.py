@@ -12,14 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.cli.bake_job import Baked, BakeJob, scene_hash
+from irradia.cli.field_job import FILE
 from irradia.cli.memory import peak_memory_bytes
 from irradia.core import provenance
 from irradia.core.colour import automatic_exposure_ev, picture_srgb8
-from irradia.core.files import write_text_atomic
+from irradia.core.files import write_atomic, write_text_atomic
 from irradia.core.progress import Progress
 from irradia.formats.lightmap import LightmapFile, make_lightmap, page_path
 from irradia.scene.layout import LightmapLayout
 from irradia.scene.types import Scene
+
+_BAND_ROWS = 64  # of a picture in the making, which takes a hundred bytes a pixel
 
 
 def write_products(
@@ -37,7 +40,9 @@ def write_products(
     from irradia.export import write_baked_glb
     from irradia.export.map_files import write_maps
     from irradia.export.shadow_mask_extension import BakedShadows
+    from irradia.transport.backend import give_back
 
+    give_back()  # files take as much again as the maps
     origin = make_provenance(job, baked.scene, time.perf_counter() - start)
     result = baked.result
     lightmap = make_lightmap(result.pages, result.coverage, origin.reproducible(), _texel_channels(baked))
@@ -79,7 +84,7 @@ def _texel_channels(baked: Baked) -> dict[str, NDArray]:
 
 
 def _write_companions(folder: Path, job: BakeJob, baked: Baked, origin: dict[str, Any]) -> None:
-    """Directional maps, shadow mask, probes, and what the next update needs."""
+    """Directional maps, shadow mask, probes, field, and what the next update needs."""
     from irradia.bake.rebake import write_memory
     from irradia.cli.bake_update import MEMORY
     from irradia.export.directional_files import write_directional_files
@@ -93,6 +98,9 @@ def _write_companions(folder: Path, job: BakeJob, baked: Baked, origin: dict[str
         write_shadow_mask(folder / "shadow_mask.png", result.shadows)
     if baked.probes is not None:
         write_probe_files(folder, baked.probes)
+    if baked.neural_field is not None:
+        with write_atomic(folder / FILE) as stream:
+            stream.write(baked.neural_field.data)
     if baked.memory is not None:
         write_memory(folder / MEMORY, baked.memory)
     elif not baked.complete and (job.out / MEMORY).exists():  # what --resume builds on
@@ -127,6 +135,7 @@ def bake_record(
         "stage_s": {name: round(seconds, 4) for name, seconds in progress.seconds.items()},
         "peak_memory_bytes": peak_memory_bytes(),
         "against_reference": _against_reference(baked),
+        "neural_field": None if baked.neural_field is None else baked.neural_field.record,
         "notes": [*baked.scene.notes, *baked.layout.notes],
         "provenance": origin,
     }
@@ -205,4 +214,6 @@ def _write_previews(path: Path, lightmap: LightmapFile) -> None:
     from irradia.formats.png import write_png
 
     for page, pixels in enumerate(lightmap.pages):
-        write_png(page_path(path, page), picture_srgb8(pixels, lightmap.exposure_ev))
+        bands = [pixels[row : row + _BAND_ROWS] for row in range(0, len(pixels), _BAND_ROWS)]
+        picture = np.concatenate([picture_srgb8(band, lightmap.exposure_ev) for band in bands])
+        write_png(page_path(path, page), picture)

@@ -19,6 +19,7 @@ from irradia.bake.shards import Shard
 from irradia.bake.texels import TexelSet
 from irradia.cli.bake_update import Revision
 from irradia.cli.bake_views import View, ViewOptions
+from irradia.cli.field_job import FieldOptions, FinishedField
 from irradia.cli.lighting import LightOptions, light_scene
 from irradia.cli.staging import staged_folder
 from irradia.core import provenance
@@ -39,6 +40,7 @@ PRODUCTS = (
     "occlusion*.*",
     "shadow_mask*.png",
     "probes.*",
+    "field.*",
     "preview*.png",
     "view.png",
     "scene.baked.glb",
@@ -49,7 +51,7 @@ PRODUCTS = (
 EndedBy = Literal["samples", "noise", "time", "interrupt"]
 
 # Choices that change nothing of what is traced.
-_NOT_TRACED = ("views", "threads", "device", "shard", "compatible", "probes", "formats")
+_NOT_TRACED = ("views", "threads", "device", "shard", "compatible", "probes", "neural_field", "formats")
 _NOT_TRACED_OF_BAKE = ("time_s", "denoise", "seams")
 
 
@@ -71,6 +73,7 @@ class BakeJob:
         overrides: Materials to replace; see :mod:`irradia.scene.material_override_file`.
         ies: Measured distributions for lights; see :mod:`irradia.scene.ies_option`.
         probes: Probes to bake as well, or None.
+        neural_field: One to train from the lightmap, or None; needs ``views``.
         formats: Of the maps; names of :mod:`irradia.export.map_files`.
         occlusion: Bakes ambient occlusion in place of light.
         shard: (i, n): the part of the samples that this machine traces.
@@ -92,6 +95,7 @@ class BakeJob:
     overrides: tuple[str, ...] = ()
     ies: tuple[str, ...] = ()
     probes: ProbeOptions | None = None
+    neural_field: FieldOptions | None = None
     formats: tuple[str, ...] = ("exr",)
     occlusion: OcclusionOptions | None = None
     shard: tuple[int, int] | None = None
@@ -122,6 +126,7 @@ class Baked:
         probes: Where they were asked for.
         memory: For the next ``--update``, where there is to be one.
         update: What an edit has asked for.
+        neural_field: Where one was asked for.
     """
 
     scene: Scene
@@ -134,6 +139,7 @@ class Baked:
     probes: ProbeSet | None = None
     memory: Memory | None = None
     update: Update | None = None
+    neural_field: FinishedField | None = None
 
 
 @dataclass(frozen=True)
@@ -273,11 +279,18 @@ def _bake(job: BakeJob, progress: Progress, shards: Sequence[Shard]) -> Baked:
     )
     if job.views is None or not complete or job.bake.mode == "direct":
         return baked
+    from irradia.bake.datasets import BakedPages
     from irradia.cli.bake_views import render_view
+    from irradia.cli.field_job import field_of_bake
     from irradia.transport.render import BakedLight
 
     shown = result.pages if result.all_light is None else result.all_light
-    return replace(baked, view=render_view(scene, BakedLight(layout, shown), job.views, progress))
+    view = render_view(scene, BakedLight(layout, shown), job.views, progress)
+    made = None
+    if job.neural_field is not None:
+        lightmap = BakedPages(layout, shown)
+        made = field_of_bake(scene, lightmap, view, job.views, job.neural_field, progress)
+    return replace(baked, view=view, neural_field=made)
 
 
 def _ended_by(job: BakeJob, stats: dict[str, Any], complete: bool) -> EndedBy:

@@ -36,6 +36,7 @@ def report_data(job: BakeJob, baked: Baked, record: dict[str, Any]) -> ReportDat
         provenance=record["provenance"],
         convergence=convergence(record["stats"]["epochs"]),
         notes=(*baked.scene.notes, *baked.layout.notes),
+        neural_field=baked.neural_field.summary if baked.neural_field else None,
     )
 
 

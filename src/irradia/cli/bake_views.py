@@ -47,6 +47,7 @@ class View:
 
     Attributes:
         baked, reference: Diffuse transport; these are compared.
+        halves: Two independent ones whose mean ``reference`` is.
         full: Full materials, to look at.
         flip: (H, W) error of ``baked``.
         relmse_noise_free: relMSE without what the reference's own noise adds to it.
@@ -55,6 +56,7 @@ class View:
     camera: Camera
     baked: F32
     reference: F32
+    halves: tuple[F32, F32]
     full: F32
     flip: F32
     comparison: Comparison
@@ -79,7 +81,8 @@ def render_view(scene: Scene, lightmap: BakedLight, options: ViewOptions, progre
         return render(scene, camera, how, lightmap=shown, progress=progress)
 
     baked = picture("baked", options.baked_spp, "diffuse", lightmap)
-    halves = [picture(f"reference-{i}", max(options.reference_spp // 2, 1), "diffuse") for i in range(2)]
+    half_spp = max(options.reference_spp // 2, 1)
+    halves = picture("reference-0", half_spp, "diffuse"), picture("reference-1", half_spp, "diffuse")
     full = picture("full", options.full_spp, "full")
     with progress.stage("comparison"):
         reference = 0.5 * (halves[0] + halves[1])
@@ -87,6 +90,7 @@ def render_view(scene: Scene, lightmap: BakedLight, options: ViewOptions, progre
             camera,
             baked,
             reference,
+            halves,
             full,
             flip(baked, reference).error,
             compare(baked, reference),

@@ -1,4 +1,4 @@
-"""``irradia demo``: bakes a scene of our own, with report."""
+"""``irradia demo``: bakes a scene of our own and trains a field from it, with report."""
 
 from __future__ import annotations
 
@@ -29,11 +29,12 @@ N_PIXELS = 640 * 360  # of the report's pictures: the references take half of th
 def command(
     as_json: bool, out: Path, reference_spp: int, seed: int, device: str, threads: int | None
 ) -> None:
-    """Bake a scene of our own, with report."""
+    """Bake a scene of our own and train a field from it, with report."""
     from irradia.bake.lightmap import BakeOptions
     from irradia.cli.bake import describe
     from irradia.cli.bake_job import BakeJob, run_bake
     from irradia.cli.bake_views import ViewOptions
+    from irradia.cli.field_job import FieldOptions
     from irradia.core.progress import stderr_progress
 
     job = BakeJob(
@@ -41,6 +42,7 @@ def command(
         out=out,
         bake=BakeOptions(seed=seed),
         views=ViewOptions(reference_spp, n_pixels=N_PIXELS, seed=seed),
+        neural_field=FieldOptions(seed=seed),
         device=device,  # type: ignore[arg-type]
         threads=threads,
     )

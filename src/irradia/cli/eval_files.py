@@ -76,7 +76,7 @@ def evaluation_record(job: EvalJob, found: Evaluation, progress: Progress, wall_
         "cameras": [camera.name or f"camera {i}" for i, camera in enumerate(found.cameras)],
         "reference_spp": job.pictures.reference_spp,
         "exposure_ev": [exposure_of(job, found, i) for i in range(len(found.cameras))],
-        "rivals": [_rival_record(rival) for rival in found.rivals],
+        "rivals": [rival_record(rival) for rival in found.rivals],
         "query": {
             "million_per_second": found.queries_per_second / 1e6,
             "flops": cost.flops,
@@ -159,7 +159,8 @@ def _comparison(job: EvalJob, found: Evaluation, number: int, camera: Camera) ->
     )
 
 
-def _rival_record(rival: Judged) -> dict[str, Any]:
+def rival_record(rival: Judged) -> dict[str, Any]:
+    """One rival's figures as plain values."""
     return {
         "key": rival.key,
         "name": rival.name,

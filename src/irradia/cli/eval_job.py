@@ -113,7 +113,13 @@ def run_eval(job: EvalJob, progress: Progress) -> dict[str, Any]:
         return write_evaluation_files(folder, job, found, progress, start)
 
 
-def evaluate(job: EvalJob, scene: Scene, stored: StoredField, progress: Progress) -> Evaluation:
+def evaluate(
+    job: EvalJob,
+    scene: Scene,
+    stored: StoredField,
+    progress: Progress,
+    views: Sequence[tuple[Camera, Reference]] = (),
+) -> Evaluation:
     """Judges a field and its rivals.
 
     Args:
@@ -121,14 +127,17 @@ def evaluate(job: EvalJob, scene: Scene, stored: StoredField, progress: Progress
         scene: From :func:`irradia.bake.datasets.setting.in_quantity`.
         stored: The field that is judged, and its size.
         progress: Shows stages.
+        views: Cameras whose references are there already; none renders those of ``job``.
     """
     from irradia.cli.eval_space import space_samples
     from irradia.field.backends import backend
     from irradia.field.evaluation import queries_per_second
 
     field, n_bytes = stored.field, stored.n_bytes
-    cameras = _cameras(scene, job.pictures)
-    references = tuple(_reference(job, scene, camera, progress) for camera in cameras)
+    views = views or [
+        (camera, _reference(job, scene, camera, progress)) for camera in _cameras(scene, job.pictures)
+    ]
+    cameras, references = (tuple(part) for part in zip(*views, strict=True))
     samples = space_samples(job, scene, field, progress)
     shown = [
         Baseline("field", "neural field", n_bytes, field.irradiance),

@@ -11,6 +11,7 @@ from irradia.bake.options import BakeOptions
 from irradia.bake.probes.options import ProbeOptions
 from irradia.cli.bake_job import BakeJob
 from irradia.cli.bake_views import ViewOptions
+from irradia.cli.field_job import FieldOptions
 from irradia.cli.lighting import LightOptions
 from irradia.core.errors import InputError
 from irradia.scene.lightmap_uv.options import LayoutOptions
@@ -58,6 +59,7 @@ def job_from_json(plain: dict[str, Any], out: Path, scene: str | None = None) ->
                 "views": _maybe(ViewOptions, values["views"]),
                 "probes": _maybe(ProbeOptions, values["probes"]),
                 "occlusion": _maybe(OcclusionOptions, values["occlusion"]),
+                "neural_field": _maybe(FieldOptions, values["neural_field"]),
             }
         )
     except (TypeError, KeyError, ValueError) as error:

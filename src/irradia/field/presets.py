@@ -1,0 +1,52 @@
+"""Fields of given sizes: where bytes do most good, found by `bench/field_quality.py`.
+
+Sizes are of the file as shipped: tables in 8 bits, the perceptron in halves, packed by zstd.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from irradia.core.errors import InputError
+from irradia.core.names import did_you_mean
+from irradia.field.encodings import Frequency, HashGrid, SphericalHarmonics, TriPlane
+from irradia.field.quantised import Bits
+from irradia.field.spec import FieldSpec
+
+_NORMAL = SphericalHarmonics(degree=3)  # E is nearly quadratic in the normal (Ramamoorthi and Hanrahan 2001)
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A field of about a size.
+
+    Attributes:
+        spec: Of irradiance.
+        bits: Of its tables; None where it has none.
+    """
+
+    spec: FieldSpec
+    bits: Bits | None = 8
+
+
+PRESETS: dict[str, Preset] = {
+    "hash-50kB": Preset(FieldSpec(HashGrid(6, 12, 2, 8, 64), _NORMAL, 64, 2)),
+    "hash-200kB": Preset(FieldSpec(HashGrid(8, 14, 2, 8, 128), _NORMAL, 64, 3)),
+    "hash-1MB": Preset(FieldSpec(HashGrid(10, 16, 2, 8, 256), _NORMAL, 64, 3)),
+    "triplane-50kB": Preset(FieldSpec(TriPlane(48, 4), _NORMAL, 64, 2)),
+    "triplane-200kB": Preset(FieldSpec(TriPlane(88, 8), _NORMAL, 64, 3)),
+    "triplane-1MB": Preset(FieldSpec(TriPlane(144, 16), _NORMAL, 64, 3)),
+    "frequency-50kB": Preset(FieldSpec(Frequency(6), _NORMAL, 88, 3), None),
+    "frequency-200kB": Preset(FieldSpec(Frequency(8), _NORMAL, 128, 6), None),
+}
+
+
+def preset(name: str) -> Preset:
+    """A preset by its name.
+
+    Raises:
+        InputError: There is none.
+    """
+    if name not in PRESETS:
+        raise InputError(f"no preset {name!r}", fix=did_you_mean(name, PRESETS))
+    return PRESETS[name]
