@@ -1,8 +1,9 @@
 """Hash grids: corners of eight samples at once, then table entries one by one.
 
 Forward goes level by level, all threads on one, so that a level's table stays in the last-level cache. Right
-before, the table is read once in order, which memory likes better than the jumps that follow; that nearly halves
-the time. Prefetches didn't help, nor reading a level while the one before it is looked up.
+before, the table is read once in order, which memory likes better than the jumps that follow: that nearly
+halves the time. Prefetches didn't help, nor reading a level while the one before it is looked up.
+
 
 Backward needs no atomics: a level belongs to one thread, which adds into scratch memory of its own (at most
 4 MB at 2^19 × 2), and then sweeps Adam over that level. The largest levels come first, so that threads end
