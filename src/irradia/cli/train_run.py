@@ -57,7 +57,7 @@ def run_training(job: TrainJob, progress: Progress) -> dict[str, Any]:
     samples = open_data(job, progress)
     spec = job.choices.spec(samples.info)
     check_can_save(job, spec)
-    backend = backend_of(job, spec)
+    backend = find_backend(job.backend, spec, job.threads)
     finished = _train(job, samples, spec, backend, progress)
     samples = samples.grown()
     made = _made(job, finished, samples, backend, progress)
@@ -113,20 +113,6 @@ def check_can_save(job: TrainJob, spec: FieldSpec) -> None:
 
     zeros = {name: np.zeros(shape, np.float32) for name, shape in spec.parameter_shapes().items()}
     encode_bin(Field(spec, FieldFrame(np.array([[0, 0, 0], [1, 1, 1]], np.float32)), zeros))
-
-
-def backend_of(job: TrainJob, spec: FieldSpec) -> Backend:
-    """What computes the field, on as many threads as were asked for.
-
-    Raises:
-        InputError: It can't, or isn't there.
-    """
-    found = find_backend(job.backend, spec)
-    if job.threads is not None and found.name == "numba":
-        from irradia.field.backends.numba_backend import NumbaBackend
-
-        return NumbaBackend(job.threads)
-    return found
 
 
 def _train(

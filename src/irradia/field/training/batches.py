@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from irradia.core.rng import Seed
 from irradia.field.backend import Batch
-from irradia.field.training.rows import Rows
+from irradia.field.training.rows import BatchMemory, Rows
 
 
 class BatchSource(ABC):
@@ -27,7 +27,7 @@ class BatchSource(ABC):
 
     @abstractmethod
     def batch(self, step: int, size: int, seed: Seed) -> Batch:
-        """The batch of a step; the same arguments give the same batch."""
+        """The batch of a step; the same arguments give the same batch, which is good until the next."""
 
 
 class MemorySource(BatchSource):
@@ -35,6 +35,7 @@ class MemorySource(BatchSource):
 
     def __init__(self, rows: Rows) -> None:
         self._rows = rows
+        self._memory = LastMemory()
 
     @property
     def n_rows(self) -> int:
@@ -43,7 +44,22 @@ class MemorySource(BatchSource):
 
     def batch(self, step: int, size: int, seed: Seed) -> Batch:
         """See :class:`BatchSource`."""
-        return self._rows.batch(draw(len(self._rows), step, size, seed))
+        packed, has_normals = self._rows.packed, self._rows.has_normals
+        memory = self._memory.of(size, packed.shape[1], has_normals=has_normals)
+        return memory.take(packed, draw(len(packed), step, size, seed))
+
+
+class LastMemory:
+    """Memory for batches of the size that was asked for last."""
+
+    def __init__(self) -> None:
+        self._last: BatchMemory | None = None
+
+    def of(self, size: int, n_columns: int, *, has_normals: bool) -> BatchMemory:
+        """Memory for batches of that size."""
+        if self._last is None or len(self._last.picked) != size:
+            self._last = BatchMemory(size, n_columns, has_normals=has_normals)
+        return self._last
 
 
 def draw(n: int, step: int, size: int, seed: Seed) -> NDArray[np.int64]:

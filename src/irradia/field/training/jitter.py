@@ -97,10 +97,9 @@ def jittered_on_surfaces(
             good = _on_its_surface(place, normal[row], near)
             if visible is None:
                 return place, good & _clear(start[row], place, near)
-            off = (
-                np.float32(_LIFT) * reach[row, None] * normal[row]
-            )  # rays along the surface itself would meet it
-            return place, good & visible(start[row] + off, place + off)
+            # Rays along the surface itself would meet it.
+            lift: F32 = np.multiply(normal[row], (_LIFT * reach)[row, None])
+            return place, good & visible(start[row] + lift, place + lift)
 
         return attempt
 

@@ -18,7 +18,6 @@ from irradia.formats.samples import SampleFile
 HELD_OUT_SHARE = 0.02  # of the rows, where there are no samples of their own for validation
 CELLS_PER_EDGE = 32  # blocks of space, along the longest edge of the box
 _MEASURED_ROWS = 1 << 20
-_TOP_PERCENTILE = 99.9
 
 Keep = Callable[[NDArray[np.int64], F32], NDArray[np.bool_]]
 
@@ -39,9 +38,36 @@ class Rows:
     def __len__(self) -> int:
         return len(self.packed)
 
-    def batch(self, index: NDArray[np.int64]) -> Batch:
-        """The rows of that index, each array contiguous."""
-        return split(self.packed.take(index, axis=0), self.has_normals)
+
+class BatchMemory:
+    """Memory for one batch at a time.
+
+    A step that asks the system for new pages waits for them longer than for the rows themselves: with
+    arrays of their own, batches of 65,536 took 5.7 ms, and take 2 ms like this.
+
+    Args:
+        size: Samples of a batch.
+        n_columns: Of packed rows.
+        has_normals: Whether they have normals.
+    """
+
+    def __init__(self, size: int, n_columns: int, *, has_normals: bool) -> None:
+        self._n_points = 6 if has_normals else 3
+        self.picked = np.empty((size, n_columns), np.float32)  # to be filled by whoever calls split
+        self._points = np.empty((self._n_points, size), np.float32)
+        self._target = np.empty((size, n_columns - self._n_points - 1), np.float32)
+
+    def take(self, packed: F32, index: NDArray[np.int64]) -> Batch:
+        """Packed rows of that index as a batch, which is good until the next one."""
+        packed.take(index, axis=0, out=self.picked, mode="clip")  # no index is out of range
+        return self.split()
+
+    def split(self) -> Batch:
+        """What was picked, as a batch; positions and normals lie coordinate by coordinate in memory."""
+        np.copyto(self._points, self.picked[:, : self._n_points].T)
+        np.copyto(self._target, self.picked[:, self._n_points : -1])
+        normal = self._points[3:].T if self._n_points == 6 else None
+        return Batch(self._points[:3].T, normal, self._target)
 
 
 @dataclass(frozen=True)
@@ -110,7 +136,12 @@ def check_fit(samples: SampleFile, spec: FieldSpec) -> None:
 
 
 def frame_of(samples: SampleFile) -> FieldFrame:
-    """The file's box, and a power of two near the 99.9th percentile of its values' magnitude.
+    """The file's box, and as scale the power of two nearest to the mean magnitude of its values.
+
+    Losses add ε = 0.01 to squares in these units, so what is darker than a tenth of the mean counts
+    absolutely, as in relMSE. Maps take their 99.9th percentile instead; near lamps that is 20 to 40 means,
+    and then all but the brightest counts absolutely: tried on Cornell and the atrium (hash 8 × 2^14, 600
+    steps of 32,768), display values were 1.6 and 0.3 dB worse and relMSE 1.8 and 1.3 times as large.
 
     Raises:
         InputError: A value isn't finite.
@@ -118,9 +149,10 @@ def frame_of(samples: SampleFile) -> FieldFrame:
     values = np.abs(samples.values[spread(len(samples), _MEASURED_ROWS)])
     if not np.isfinite(values).all():
         raise InputError("expected finite values, found NaN or infinity", where=str(samples.path))
-    top = float(np.percentile(values, _TOP_PERCENTILE))
-    scale = 2.0 ** round(math.log2(top)) if top > 0.0 else 1.0
-    return FieldFrame(samples.aabb, scale, samples.info.quantity)
+    mean = float(values.mean(dtype=np.float64))
+    return FieldFrame(
+        samples.aabb, 2.0 ** round(math.log2(mean)) if mean > 0.0 else 1.0, samples.info.quantity
+    )
 
 
 def pack(rows: F32, n_values: int, frame: FieldFrame) -> F32:
@@ -128,13 +160,6 @@ def pack(rows: F32, n_values: int, frame: FieldFrame) -> F32:
     rows[:, :3] = frame.to_unit(rows[:, :3])
     rows[:, -1 - n_values : -1] *= np.float32(1.0 / frame.scale)
     return rows
-
-
-def split(packed: F32, has_normals: bool) -> Batch:
-    """Packed rows as a batch."""
-    first = 6 if has_normals else 3
-    normal = np.ascontiguousarray(packed[:, 3:6]) if has_normals else None
-    return Batch(np.ascontiguousarray(packed[:, :3]), normal, np.ascontiguousarray(packed[:, first:-1]))
 
 
 def spread(n: int, at_most: int) -> NDArray[np.int64]:

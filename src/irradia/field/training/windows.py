@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from irradia.core.rng import Seed
 from irradia.field.backend import F32, Batch
 from irradia.field.spec import FieldFrame
-from irradia.field.training.batches import BatchSource, draw
-from irradia.field.training.rows import HeldOut, pack, split
+from irradia.field.training.batches import BatchSource, LastMemory, draw
+from irradia.field.training.rows import HeldOut, pack
 from irradia.formats.samples import SampleFile
 
 BLOCK_ROWS = 1 << 14  # about half a megabyte
@@ -52,6 +52,7 @@ class WindowSource(BatchSource):
         affordable = memory_bytes // (N_GROUPS * block_rows * row_bytes)
         self._group_blocks = int(np.clip(affordable, 1, -(-self._n_blocks // N_GROUPS)))
         self._shift_steps = max(1, round(self._group_blocks * block_rows / batch_size))
+        self._memory = LastMemory()
         self._groups: dict[int, F32] = {}  # packed rows by number of the group
 
     @property
@@ -64,7 +65,10 @@ class WindowSource(BatchSource):
         groups = self._window(step // self._shift_steps)
         ends = np.cumsum([len(group) for group in groups])
         drawn = draw(int(ends[-1]), step, size, seed)
-        return split(_gather(groups, ends, drawn), self._samples.info.has_normals)
+        info = self._samples.info
+        memory = self._memory.of(size, info.n_columns, has_normals=info.has_normals)
+        _gather(groups, ends, drawn, memory.picked)
+        return memory.split()
 
     def _window(self, first: int) -> list[F32]:
         """The groups in memory from the ``first``-th on, after reading those that are not there yet."""
@@ -95,12 +99,10 @@ class WindowSource(BatchSource):
         return order[within * self._group_blocks : (within + 1) * self._group_blocks]
 
 
-def _gather(groups: list[F32], ends: NDArray[np.int64], drawn: NDArray[np.int64]) -> F32:
-    """Rows by their numbers in all groups together."""
+def _gather(groups: list[F32], ends: NDArray[np.int64], drawn: NDArray[np.int64], picked: F32) -> None:
+    """Fills ``picked`` with rows by their numbers in all groups together."""
     slot = np.searchsorted(ends, drawn, side="right")
     within = drawn - (ends - [len(group) for group in groups])[slot]
-    picked = np.empty((len(drawn), groups[0].shape[1]), np.float32)
     for number, group in enumerate(groups):
         mine = slot == number
         picked[mine] = group[within[mine]]
-    return picked
