@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from irradia.cli.bake_views import View, ViewOptions
     from irradia.field.field import Field
     from irradia.field.quantised import QuantisedField
+    from irradia.field.spec import FieldSpec
+    from irradia.field.training import TrainOptions
     from irradia.formats.samples import SampleFile
     from irradia.report import FieldSummary, Rival
     from irradia.scene.types import Scene
@@ -126,11 +128,12 @@ def make_field(
 
     chosen = preset(options.preset)
     samples, validation = draw_samples(scene, lightmap, options, progress)
-    trained = _train(chosen.spec, samples, validation, options, progress)
+    how = chosen.training(options.train_s, options.seed)
+    trained = _train(chosen.spec, samples, validation, how, progress)
     if chosen.bits is None:
         return trained
-    how = FinishOptions(seed=options.seed)
-    return finish(trained, chosen.bits, samples, how, progress=progress)
+    finishing = FinishOptions(batch_size=chosen.batch_size, seed=options.seed)
+    return finish(trained, chosen.bits, samples, finishing, progress=progress)
 
 
 def draw_samples(
@@ -154,13 +157,12 @@ def draw_samples(
 
 
 def _train(
-    spec: Any, samples: SampleFile, validation: SampleFile, options: FieldOptions, progress: Progress
+    spec: FieldSpec, samples: SampleFile, validation: SampleFile, how: TrainOptions, progress: Progress
 ) -> Field:
     from irradia.cli.train_view import shown
     from irradia.field.field import Field
-    from irradia.field.training import Finished, TrainContext, TrainOptions, train
+    from irradia.field.training import Finished, TrainContext, train
 
-    how = TrainOptions(steps=None, time_s=options.train_s, seed=options.seed)
     stopped = Event()
     events = train(samples, spec, how, TrainContext(validation, stop=stopped.is_set))
     for event in shown(events, how, progress, stopped.set):

@@ -12,21 +12,38 @@ from irradia.core.names import did_you_mean
 from irradia.field.encodings import Frequency, HashGrid, SphericalHarmonics, TriPlane
 from irradia.field.quantised import Bits
 from irradia.field.spec import FieldSpec
+from irradia.field.training.options import TrainOptions
 
 _NORMAL = SphericalHarmonics(degree=3)  # E is nearly quadratic in the normal (Ramamoorthi and Hanrahan 2001)
 
 
 @dataclass(frozen=True)
 class Preset:
-    """A field of about a size.
+    """A field of about a size, and how it learns best in a minute.
 
     Attributes:
         spec: Of irradiance.
-        bits: Of its tables; None where it has none.
+        bits: Of its tables; None leaves them in halves.
+        batch_size: Samples a step: small tables gain more from many steps than from large ones.
+        lr_encoding, lr_network: Learning rates at the start.
     """
 
     spec: FieldSpec
     bits: Bits | None = 8
+    batch_size: int = 16_384
+    lr_encoding: float = 0.01
+    lr_network: float = 0.005
+
+    def training(self, time_s: float, seed: int = 0) -> TrainOptions:
+        """A training of so many seconds."""
+        return TrainOptions(
+            steps=None,
+            time_s=time_s,
+            batch_size=self.batch_size,
+            lr_encoding=self.lr_encoding,
+            lr_network=self.lr_network,
+            seed=seed,
+        )
 
 
 PRESETS: dict[str, Preset] = {
