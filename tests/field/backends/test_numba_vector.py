@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import importlib.util
 import math
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
 from irradia.core.errors import InputError
+from irradia.field.backends import numba_compile
 from irradia.field.backends.numba_compile import inner, kernel, take
 from irradia.field.backends.numba_math import exp8, log8, sin_cos8
 from irradia.field.backends.numba_team import Team
@@ -166,6 +169,34 @@ def test_a_team_does_every_task_once(threads):
         assert (by < threads).all()
 
 
+def test_callers_of_a_team_wait_for_each_other():
+    team = Team(2)
+    counts = [np.zeros(5000, np.int64) for _ in range(4)]
+    with ThreadPoolExecutor(4) as callers:
+        for done in [callers.submit(team.run, _note_tasks, len(c), c, np.zeros_like(c)) for c in counts * 10]:
+            done.result()
+    assert all((count == 10).all() for count in counts)
+
+
 def test_a_team_needs_a_thread():
     with pytest.raises(InputError, match="at least 1 thread, found 0"):
         Team(0)
+
+
+def test_kept_code_is_stale_when_any_kernels_file_has_changed(tmp_path, monkeypatch):
+    file = tmp_path / "twice.py"
+    file.write_text(
+        "from irradia.field.backends import numba_compile
+from irradia.field.backends.numba_compile import inner\n\n\n@inner\ndef twice(x):\n    return 2.0 * x\n"
+    )
+
+    def taken_from_disk() -> int:
+        spec = importlib.util.spec_from_file_location("twice", file)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        assert module.twice(1.5) == 3.0
+        return sum(module.twice.stats.cache_hits.values())
+
+    assert [taken_from_disk(), taken_from_disk()] == [0, 1]
+    monkeypatch.setattr(numba_compile, "_STAMP", b"of other files")
+    assert [taken_from_disk(), taken_from_disk()] == [0, 1]

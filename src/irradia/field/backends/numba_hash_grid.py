@@ -4,7 +4,6 @@ Forward goes level by level, all threads on one, so that a level's table stays i
 before, the table is read once in order, which memory likes better than the jumps that follow: that nearly
 halves the time. Prefetches didn't help, nor reading a level while the one before it is looked up.
 
-
 Backward needs no atomics: a level belongs to one thread, which adds into scratch memory of its own (at most
 4 MB at 2^19 × 2), and then sweeps Adam over that level. The largest levels come first, so that threads end
 together.
@@ -150,6 +149,8 @@ def _forward(thread, next_task, points, table, features, row, levels, entries, w
             _corners(points, tile * TILE, levels, level, entry, weight)
             if n_features == 2:  # the usual, compiled for it
                 _gather(own, entry, weight, 2, features[tile], first_row)
+            elif n_features == 4:
+                _gather(own, entry, weight, 4, features[tile], first_row)
             else:
                 _gather(own, entry, weight, n_features, features[tile], first_row)
 
@@ -260,6 +261,8 @@ def _learn(thread, next_task, points, gradients, row, learned, adam, levels, ent
             _corners(points, tile * TILE, levels, level, entry, weight)
             if n_features == 2:
                 _scatter(gradient, entry, weight, 2, gradients[tile], first_row)
+            elif n_features == 4:
+                _scatter(gradient, entry, weight, 4, gradients[tile], first_row)
             else:
                 _scatter(gradient, entry, weight, n_features, gradients[tile], first_row)
         size = levels.n_entries[level] * n_features

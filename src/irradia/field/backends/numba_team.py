@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ from irradia.core.errors import InputError
 
 
 class Team:
-    """A fixed number of threads, the caller among them. One caller at a time.
+    """A fixed number of threads, the caller among them; callers wait for each other.
 
     Attributes:
         n_threads: How many run each kernel.
@@ -36,6 +37,7 @@ class Team:
         self.n_threads = n_threads or available_threads()
         self._helpers = ThreadPoolExecutor(max(self.n_threads - 1, 1), thread_name_prefix="irradia-field")
         self._next_task = np.zeros(1, np.int64)
+        self._busy = Lock()
 
     def run(self, kernel: Callable[..., None], *arguments: Any) -> None:
         """Calls ``kernel(thread, next_task, *arguments)`` on every thread and waits for all.
@@ -45,12 +47,13 @@ class Team:
                 ``take(next_task)``, and may use scratch memory that belongs to number ``thread``.
             arguments: Arrays, numbers and named tuples of them.
         """
-        self._next_task[0] = 0
-        others = range(1, self.n_threads)
-        running = [self._helpers.submit(kernel, i, self._next_task, *arguments) for i in others]
-        try:
-            kernel(0, self._next_task, *arguments)
-        finally:
-            for call in running:
-                if not call.cancel():  # one that hasn't begun would find no task left
-                    call.result()
+        with self._busy:
+            self._next_task[0] = 0
+            others = range(1, self.n_threads)
+            running = [self._helpers.submit(kernel, i, self._next_task, *arguments) for i in others]
+            try:
+                kernel(0, self._next_task, *arguments)
+            finally:
+                for call in running:
+                    if not call.cancel():  # one that hasn't begun would find no task left
+                        call.result()
