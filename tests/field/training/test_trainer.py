@@ -304,7 +304,9 @@ def test_with_numba_too_resuming_gives_the_bytes_of_never_having_stopped(
     path, taken = tmp_path / "stopped.npz", []
     finished(
         *(samples, OPTIONS),
-        **{"spec": field, "backend": backend, "checkpoint": path},
+        spec=field,
+        backend=backend,
+        checkpoint=path,
         stop=lambda: len(taken) >= 17 or taken.append(1),
     )
     resumed = finished(samples, OPTIONS, spec=field, backend=backend, checkpoint=path, resume=True)
