@@ -186,8 +186,7 @@ def test_a_team_needs_a_thread():
 def test_kept_code_is_stale_when_any_kernels_file_has_changed(tmp_path, monkeypatch):
     file = tmp_path / "twice.py"
     file.write_text(
-        "from irradia.field.backends import numba_compile
-from irradia.field.backends.numba_compile import inner\n\n\n@inner\ndef twice(x):\n    return 2.0 * x\n"
+        "from irradia.field.backends.numba_compile import inner\n\n\n@inner\ndef twice(x):\n    return 2.0 * x\n"
     )
 
     def taken_from_disk() -> int:
