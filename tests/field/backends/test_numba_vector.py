@@ -41,6 +41,14 @@ A = np.array([-2.5, -1.0, -0.0, 0.5, 1.5, 2.5, np.inf, np.nan], np.float32)
 B = np.array([2.0, -4.0, 3.0, 0.5, 1.5, -1.0, 1.0, 1.0], np.float32)
 WHOLE = np.array([0, 1, 7, 255, 65536, 2147483647, 3, 4], np.uint32)
 
+KERNEL = """
+from irradia.field.backends.numba_compile import inner
+
+@inner
+def twice(x):
+    return 2.0 * x
+"""
+
 
 @inner
 def _floats(a, b, out):
@@ -185,9 +193,7 @@ def test_a_team_needs_a_thread():
 
 def test_kept_code_is_stale_when_any_kernels_file_has_changed(tmp_path, monkeypatch):
     file = tmp_path / "twice.py"
-    file.write_text(
-        "from irradia.field.backends.numba_compile import inner\n\n\n@inner\ndef twice(x):\n    return 2.0 * x\n"
-    )
+    file.write_text(KERNEL)
 
     def taken_from_disk() -> int:
         spec = importlib.util.spec_from_file_location("twice", file)
