@@ -47,13 +47,13 @@ class Preset:
 
 
 PRESETS: dict[str, Preset] = {
-    "hash-50kB": Preset(FieldSpec(HashGrid(6, 12, 2, 8, 64), _NORMAL, 64, 2)),
-    "hash-200kB": Preset(FieldSpec(HashGrid(8, 14, 2, 8, 128), _NORMAL, 64, 3)),
-    "hash-1MB": Preset(FieldSpec(HashGrid(10, 16, 2, 8, 256), _NORMAL, 64, 3)),
-    "triplane-50kB": Preset(FieldSpec(TriPlane(48, 4), _NORMAL, 64, 2)),
+    "hash-50kB": Preset(FieldSpec(HashGrid(3, 13, 2, 16, 64), _NORMAL, 64, 2)),
+    "hash-200kB": Preset(FieldSpec(HashGrid(4, 15, 2, 16, 128), _NORMAL, 64, 3)),
+    "hash-1MB": Preset(FieldSpec(HashGrid(6, 17, 2, 16, 256), _NORMAL, 64, 3)),
+    "triplane-50kB": Preset(FieldSpec(TriPlane(58, 4), _NORMAL, 64, 2)),
     "triplane-200kB": Preset(FieldSpec(TriPlane(88, 8), _NORMAL, 64, 3)),
     "triplane-1MB": Preset(FieldSpec(TriPlane(144, 16), _NORMAL, 64, 3)),
-    "frequency-50kB": Preset(FieldSpec(Frequency(6), _NORMAL, 88, 3), None),
+    "frequency-50kB": Preset(FieldSpec(Frequency(6), _NORMAL, 100, 3), None),
     "frequency-200kB": Preset(FieldSpec(Frequency(8), _NORMAL, 128, 6), None),
 }
 
