@@ -171,7 +171,8 @@ def _judge(
         values = rival.irradiance(samples.positions, samples.normals)
     evenly = samples.evenly
     space = score_in_space(values[evenly], samples.irradiance[evenly], samples.variance[evenly])
-    leaks = leak_ratio(values, samples.irradiance, samples.variance, samples.distance_m)
+    kept = ~samples.beside_lamps
+    leaks = leak_ratio(values[kept], samples.irradiance[kept], samples.variance[kept], samples.wall_m[kept])
     return Judged(rival.key, rival.name, rival.n_bytes, tuple(views), space, leaks)
 
 

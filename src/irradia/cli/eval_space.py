@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from irradia.core.rng import Seed
 from irradia.core.sh import irradiance
 from irradia.field.evaluation import NEAR_WALL_M
 from irradia.scene.fingerprint import fingerprint
-from irradia.scene.merge import merge
+from irradia.scene.merge import MergedMesh, merge
 from irradia.scene.types import Scene
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from irradia.transport.receivers import Receivers
 
 F32 = NDArray[np.float32]
-_VERSION = 1
+_VERSION = 2
 _PLACES_AT_ONCE = 1 << 14
 _HOPELESS = 64  # times as many places as are wanted near walls, and there are next to none
 
@@ -42,7 +42,8 @@ class SpaceSamples:
         positions, normals: (N, 3) metres, unit.
         irradiance: (N, 3) W·m⁻².
         variance: (N,) of its mean over channels.
-        distance_m: (N,) to the nearest surface.
+        wall_m: (N,) to the nearest surface that doesn't shine.
+        lamp_m: (N,) to the nearest that does; inf where there is none.
         evenly: (N,) those that are spread evenly over free space; the others are near surfaces.
     """
 
@@ -50,8 +51,14 @@ class SpaceSamples:
     normals: F32
     irradiance: F32
     variance: F32
-    distance_m: NDArray[np.float64]
+    wall_m: NDArray[np.float64]
+    lamp_m: NDArray[np.float64]
     evenly: NDArray[np.bool_]
+
+    @property
+    def beside_lamps(self) -> NDArray[np.bool_]:
+        """(N,) places where light changes by the centimetre, walls or none."""
+        return self.lamp_m <= NEAR_WALL_M
 
 
 def space_samples(job: EvalJob, scene: Scene, field: Field, progress: Progress) -> SpaceSamples | None:
@@ -95,7 +102,7 @@ def _draw(job: EvalJob, scene: Scene, quantity: Any, progress: Progress) -> dict
         "normals": places.normals,
         "irradiance": np.concatenate(values),
         "variance": np.concatenate(variance),
-        "distance_m": NearestSurface(setting.mesh).distance_m(places.positions),
+        **_distances(scene, setting.mesh, places.positions),
         "evenly": np.arange(len(places)) < len(evenly),
     }
 
@@ -115,6 +122,18 @@ def _places(setting: Setting, count: int, seed: Seed) -> tuple[Receivers, Receiv
         found.append(close)
         n_found, n_tried = n_found + len(close), n_tried + _PLACES_AT_ONCE
     return evenly, Receivers.join(found).take(slice(0, n_near))
+
+
+def _distances(scene: Scene, mesh: MergedMesh, positions: F32) -> dict[str, NDArray[np.float64]]:
+    """(N,) metres to what doesn't shine and to what does."""
+    shines = np.array([max(material.emission) > 0.0 for material in scene.materials], np.bool_)[mesh.material]
+    found = {}
+    for name, chosen in (("wall_m", ~shines), ("lamp_m", shines)):
+        lod = None if mesh.lod is None else mesh.lod[chosen]
+        part = replace(mesh, indices=mesh.indices[chosen], lod=lod)
+        nothing = np.full(len(positions), np.inf)
+        found[name] = NearestSurface(part).distance_m(positions) if chosen.any() else nothing
+    return found
 
 
 def _key(scene: Scene, quantity: str, options: SpaceOptions, seed: int) -> dict[str, Any]:
@@ -138,9 +157,9 @@ def _from_file(job: EvalJob, scene: Scene, field: Field) -> SpaceSamples:
         )
     positions = np.ascontiguousarray(file.positions, np.float32)
     normals, values = _light_of(file, Seed(job.seed).child("normals"))
-    distance_m = NearestSurface(merge(scene)).distance_m(positions)
     evenly = np.ones(len(positions), np.bool_)
-    return SpaceSamples(positions, normals, values, np.array(file.variance), distance_m, evenly)
+    distances = _distances(scene, merge(scene), positions)
+    return SpaceSamples(positions, normals, values, np.array(file.variance), evenly=evenly, **distances)
 
 
 def _light_of(file: SampleFile, seed: Seed) -> tuple[F32, F32]:
