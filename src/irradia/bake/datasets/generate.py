@@ -22,7 +22,7 @@ ON_SURFACES = 0.2
 """Share of a volume's points that lie on surfaces, under their normals (Coomans et al. 2026)."""
 
 _RAYS_PER_LAUNCH = {"cpu": 1 << 21, "cuda": 1 << 26}
-_FEWEST_POINTS = 1 << 8  # of a launch, however many samples each has
+_FEWEST_POINTS, _MOST_POINTS = 1 << 8, 1 << 16  # of a launch, however many samples each has
 
 
 def sample_info(setting: Setting, options: SampleOptions, provenance: Mapping[str, Any]) -> SampleInfo:
@@ -96,7 +96,8 @@ def points_per_launch(n_samples: int) -> int:
     """So that every launch traces about as many rays, and none is long."""
     from irradia.transport.backend import device
 
-    return max(_RAYS_PER_LAUNCH[device.kind] // (2 * n_samples), _FEWEST_POINTS)
+    n_points = _RAYS_PER_LAUNCH[device.kind] // (2 * n_samples)
+    return min(max(n_points, _FEWEST_POINTS), _MOST_POINTS)
 
 
 def _box(setting: Setting, options: SampleOptions) -> F64:
