@@ -107,8 +107,8 @@ def table(
     query = query_cost(spec)
     training = step_cost(spec, batch)
     bound = {
-        "network train": (training.flops - batch * query.encoding_flops * 2) / limits.flops,
-        "evaluation: network infer": batch * query.network_flops / limits.flops,
+        "perceptron train": (training.flops - batch * query.encoding_flops * 2) / limits.flops,
+        "evaluation: perceptron infer": batch * query.network_flops / limits.flops,
     }
     lines = []
     for name, seconds in kernels.items():

@@ -34,16 +34,14 @@ from irradia.field.backends.numba_encoding import (
 )
 from irradia.field.backends.numba_functions import LOSSES
 from irradia.field.backends.numba_network import (
-    infer,
     make_network,
     make_scratch,
     make_totals,
     pack,
-    train,
     unpack,
-    update_network,
     whole_blocks,
 )
+from irradia.field.backends.numba_perceptron import infer, train, update_network
 from irradia.field.backends.numba_team import Team
 from irradia.field.checks import check_options, check_parameters
 from irradia.field.spec import FieldSpec
