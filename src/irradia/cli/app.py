@@ -29,6 +29,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "train": ("train", "A neural field from a dataset."),
     "render": ("render", "Path-trace an image of a scene or of a baked result."),
     "eval": ("eval", "A field against the path-traced reference."),
+    "export": ("export", "A field in another format, smaller, or inside a baked scene."),
     "compare": ("compare", "Metrics between two images or lightmaps."),
 }
 

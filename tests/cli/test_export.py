@@ -1,0 +1,106 @@
+"""``irradia export``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from irradia.cli import app
+from irradia.field.bin_conventions import BinConventions
+from irradia.field.bin_reader import decode_bin
+from irradia.field.files import load_field, read_field
+from irradia.formats.samples import SampleInfo, SampleWriter
+
+ROOT = Path(__file__).resolve().parents[2]
+GRID = ROOT / "vectors" / "hash-fp32.safetensors"
+PLANES_BIN = ROOT / "vectors" / "triplane-bin.bin"
+BOX = ((-1.0, 0.0, 0.5), (1.0, 2.25, 4.5))
+
+
+@pytest.fixture
+def export(capfd):
+    def run(*arguments: Any) -> tuple[int, dict[str, Any]]:
+        code = app.run(["export", *map(str, arguments), "--json"])
+        return code, json.loads(capfd.readouterr().out)
+
+    return run
+
+
+def places(n: int = 64) -> tuple[np.ndarray, np.ndarray]:
+    rng = np.random.default_rng(9)
+    normals = rng.normal(size=(n, 3))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    return rng.uniform(*BOX, (n, 3)).astype(np.float32), normals.astype(np.float32)
+
+
+def samples(path: Path, light: np.ndarray) -> Path:
+    rows = np.hstack([*places(len(light)), light, np.zeros((len(light), 1))]).astype(np.float32)
+    with SampleWriter(path, SampleInfo("volume", BOX)) as writer:
+        writer.append(rows)
+    return path
+
+
+@pytest.mark.parametrize("name", ["a.safetensors", "a.safetensors.zst", "a.bin"])
+def test_formats_hold_the_same_field(export, tmp_path: Path, name: str) -> None:
+    code, said = export(GRID, "-o", tmp_path / name)
+    assert (code, said["bytes"]) == (0, (tmp_path / name).stat().st_size)
+    same = load_field(tmp_path / name).irradiance(*places())
+    np.testing.assert_allclose(same, load_field(GRID).irradiance(*places()), rtol=5e-3)
+
+
+@pytest.mark.parametrize("bits", [4, 8])
+def test_tables_are_rounded_and_taught(export, tmp_path: Path, bits: int) -> None:
+    truth = 1.25 * load_field(GRID).irradiance(*places(4000))  # so there is something to learn
+    data = samples(tmp_path / "d.samples", truth)
+    rounded, taught = tmp_path / "r.safetensors", tmp_path / "t.safetensors"
+    assert export(GRID, "-o", rounded, "--finish", f"int{bits}")[0] == 0
+    assert export(GRID, "-o", taught, "--finish", f"int{bits}", "--samples", data)[0] == 0
+    errors = []
+    for path in (rounded, taught):
+        stored = read_field(path)
+        assert {tensor.bits for tensor in stored.tensors.values()} == {bits}
+        errors.append(np.abs(stored.field.irradiance(*places(4000)) - truth).mean())
+    assert errors[1] < 0.5 * errors[0]
+
+
+def test_conventions_are_named_or_found(export, tmp_path: Path) -> None:
+    truth = decode_bin(PLANES_BIN.read_bytes(), BinConventions(bias="before", normal="unit"))
+    light = truth.irradiance(*places(64))
+    named, found = tmp_path / "named.safetensors", tmp_path / "found.safetensors"
+    code, _ = export(PLANES_BIN, "-o", named, "--convention", "bias=before", "--convention", "normal=unit")
+    assert code == 0
+    np.testing.assert_allclose(load_field(named).irradiance(*places()), light, rtol=5e-3)
+    code, said = export(PLANES_BIN, "-o", found, "--calibrate", samples(tmp_path / "d.samples", light))
+    assert code == 0
+    assert said["calibration"]["conventions"]["bias"] == "before"
+    assert said["calibration"]["error"] < 1e-3
+    np.testing.assert_allclose(load_field(found).irradiance(*places()), light, rtol=5e-3)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("-o", "x.glb"),
+        ("-o", "x.pt"),
+        ("-o", "x.bin", "--preset", "lamp"),
+        ("-o", "x.bin", "--convention", "bias=lamp"),
+        ("-o", "x.safetensors", "--calibrate", str(GRID)),
+    ],
+)
+def test_wrong_options_are_bad_input(capfd, tmp_path: Path, monkeypatch, arguments) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert app.run(["export", str(GRID), *arguments]) == 2
+    assert not list(tmp_path.iterdir())
+
+
+def test_samples_of_other_light_are_not_believed(capfd, tmp_path: Path) -> None:
+    noise = np.random.default_rng(1).uniform(0, 50, (64, 3))
+    data = samples(tmp_path / "d.samples", noise)
+    out = tmp_path / "x.safetensors"
+    assert app.run(["export", str(PLANES_BIN), "-o", str(out), "--calibrate", str(data)]) == 2
+    assert "no conventions explain" in capfd.readouterr().err
+    assert not out.exists()
