@@ -20,7 +20,8 @@ from irradia.field.native_fields import decode_field, encode_field
 from irradia.field.quantise import FinishOptions, finish, round_tables
 from irradia.field.quantised import pack_nibbles, quantise, unpack_nibbles
 from irradia.field.spec import FieldFrame, FieldSpec
-from irradia.field.training.rows import pack, split
+from irradia.field.training.batches import MemorySource
+from irradia.field.training.rows import Rows, pack
 from irradia.formats.samples import SampleFile, SampleInfo
 
 BOX = ((-1.0, 0.0, 0.0), (1.0, 2.0, 4.0))
@@ -96,11 +97,10 @@ def trained(encoding, steps: int = 600) -> Field:
     spec = FieldSpec(encoding, Identity(), width=16, n_hidden_layers=2)
     options = StepOptions(encoding_adam=AdamOptions(epsilon=1e-15, skip_zero=True), average=0.0)
     stepper = backend("numba", spec).stepper(spec, new_state(spec, Seed(1), options), options)
-    rng = np.random.default_rng(2)
+    source = MemorySource(Rows(pack(WORLD.rows.copy(), 3, FRAME), has_normals=True))
     for step in range(steps):
-        rows = pack(WORLD.rows[rng.integers(0, len(WORLD), 2048)], 3, FRAME)
         left = 0.05 ** (step / steps)
-        stepper.step(split(rows, True), Rates(0.01 * left, 0.01 * left))
+        stepper.step(source.batch(step, 2048, Seed(2)), Rates(0.01 * left, 0.01 * left))
     return Field(spec, FRAME, stepper.state().parameters, "numba")
 
 
