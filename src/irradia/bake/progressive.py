@@ -189,12 +189,13 @@ class ProgressiveBake:
                 done += n
                 stage.advance(n * len(self.texels))
                 yield self._report("first light", self.texels)
+        now.direct = now.direct.without_rays()  # zeros that take no memory
 
     def _settle(self, progress: Progress) -> None:
         now = self.progression
         n_rays = rays_to_settle(self.light.n_texels, self._samples)
         seed = self._seed.child("settle").uint32()
-        first, lanes = self.light.incoming(now.direct), self._lanes(self.texels, n_rays)
+        lanes = self._lanes(self.texels, n_rays)
 
         def bounce(arriving: TexelColour, scale: float) -> TexelColour:
             cache = self._cache(arriving, scale)
@@ -207,7 +208,7 @@ class ProgressiveBake:
                 now.epochs.append(Epoch(n_rays, mean))
                 stage.note(f"{len(now.epochs)} epochs")
 
-            now.settled = settle(first, bounce, self.light.mean, each)
+            now.settled = settle(self.light.incoming(now.direct), bounce, self.light.mean, each)
         self.light.give_back()
         now.n_rays += n_rays * len(self.texels) * len(now.epochs)
         now.total = now.direct.without_rays()
@@ -249,9 +250,11 @@ class ProgressiveBake:
                 yield self._report("gather", turn.texels)
             if self.keep_slices is not None:
                 self.keep_slices.append(now.part.to_arrays())
-            now.total = self.meter.fold(now.total, now.part)
+            self.meter.fold(now.total, now.part)
             now.part = self.light.empty_sums()
             self.rounds.done(turn)
+        del cache
+        self.light.give_back()
         now.epochs.append(Epoch(self._mean_rays(), self.light.mean(self.estimate())))
 
     def _before(self) -> TexelSums:
@@ -309,7 +312,7 @@ class ProgressiveBake:
         now = self.progression
         now.direct, now.total = direct, direct.without_rays()
         for part in slices:
-            now.total = self.meter.fold(now.total, part)
+            self.meter.fold(now.total, part)
         now.settled, now.n_grown = self.light.incoming(direct), len(self.plan.growing)
         while (turn := self.rounds.next()) is not None:
             self.rounds.done(turn)

@@ -19,7 +19,7 @@ def rays_to_settle(n_texels: int, samples: int) -> int:
 
 
 def settle(
-    direct: TexelColour,
+    estimate: TexelColour,
     bounce: Callable[[TexelColour, float], TexelColour],
     mean: Callable[[TexelColour], float],
     each: Callable[[float], None],
@@ -31,7 +31,7 @@ def settle(
     jumps ahead by the geometric series' remainder.
 
     Args:
-        direct: E/π straight from sources.
+        estimate: E/π straight from sources, to begin with.
         bounce: E/π from a map that is multiplied by a factor first.
         mean: Mean of a map.
         each: Told the mean after every epoch.
@@ -39,8 +39,7 @@ def settle(
     Returns:
         The settled map.
     """
-    estimate, scale = direct, 1.0
-    means = [mean(direct)]
+    scale, means = 1.0, [mean(estimate)]
     for _ in range(_MAX_EPOCHS):
         estimate = bounce(estimate, scale)
         means.append(mean(estimate))

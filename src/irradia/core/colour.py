@@ -33,11 +33,11 @@ def automatic_exposure_ev(rgb: ArrayLike) -> float:
 
     The geometric mean of the luminances above zero becomes middle grey. Black images get 0.
     """
-    lit = luminance(rgb).astype(np.float64)
-    lit = lit[np.isfinite(lit) & (lit > 0.0)]
+    lit = luminance(rgb)
+    lit = lit[np.isfinite(lit) & (lit > 0.0)].astype(np.float64)
     if lit.size == 0:
         return 0.0
-    return float(np.log2(MIDDLE_GREY) - np.log2(lit).mean())
+    return float(np.log2(MIDDLE_GREY) - np.log2(lit, out=lit).mean())
 
 
 def preview_srgb8(rgb: ArrayLike, exposure_ev: float) -> NDArray[np.uint8]:

@@ -31,15 +31,14 @@ def add_lightmap(json: Json, slots: Slots, pages: NDArray[np.float32], encoding:
         pages: (P, H, W, 3) E/π.
         encoding: Of the texture's texels.
     """
-    lit = pages[pages.max(axis=-1) > 0.0]
-    scale = power_of_two_scale(lit)
+    scale, exposure_ev = _brightness(pages)
     lightmap: Json = {
         "quantity": QUANTITY,
         "mimeType": "image/ktx2",
         "bufferView": -1,
         "encoding": encoding,
         "scale": scale,
-        "exposure": round(automatic_exposure_ev(lit), 3),
+        "exposure": round(exposure_ev, 3),
         "width": pages.shape[2],
         "height": pages.shape[1],
         "pages": pages.shape[0],
@@ -47,6 +46,12 @@ def add_lightmap(json: Json, slots: Slots, pages: NDArray[np.float32], encoding:
     texture = encode_ktx2(pages / np.float32(scale), encoding, {"irradia:scale": repr(scale)})
     slots.add_blob(texture, lambda view: lightmap.update(bufferView=view))
     json.setdefault("extensions", {})[NAME] = {"version": VERSION, "lightmap": lightmap}
+
+
+def _brightness(pages: NDArray[np.float32]) -> tuple[float, float]:
+    """Scale and exposure of what isn't black."""
+    lit = pages[pages.max(axis=-1) > 0.0]
+    return power_of_two_scale(lit), automatic_exposure_ev(lit)
 
 
 @dataclass(frozen=True)

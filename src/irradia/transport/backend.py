@@ -7,6 +7,8 @@ on a libLLVM that it can't use. Modules of this package write
 
 from __future__ import annotations
 
+import gc
+
 from irradia.core.device import prepare
 from irradia.transport import requested_device
 
@@ -19,4 +21,13 @@ mi.set_variant("cuda_ad_rgb" if device.kind == "cuda" else "llvm_ad_rgb")
 mi.set_log_level(mi.LogLevel.Warn)
 dr.set_thread_count(device.threads)
 
-__all__ = ["device", "dr", "mi"]
+__all__ = ["device", "dr", "give_back", "mi"]
+
+
+def give_back() -> None:
+    """Returns all memory of the device that nothing uses; otherwise it is kept for the next array.
+
+    Bakes and their schedules refer to each other, so what is done with is collected first.
+    """
+    gc.collect()
+    dr.flush_malloc_cache()

@@ -180,7 +180,9 @@ class TexelLight:
             rho += looks.reflectance
             stops += 1.0 - looks.pass_probability
             dr.eval(rho, stops)
-        return rho / dr.maximum(stops, 1e-6)
+        rho = rho / dr.maximum(stops, 1e-6)
+        dr.eval(rho)
+        return rho
 
     def add_rays(
         self,
@@ -278,12 +280,13 @@ class TexelLight:
         return point, self._frames.at(triangle, bary, point.ns, active)
 
     def incoming(self, *parts: TexelSums) -> mi.Color3f:
-        """E/π of independent parts together, as the next epoch's cache needs it."""
+        """E/π of independent parts together, as the next epoch's cache needs it; it keeps no hold of them."""
         result = mi.Color3f(0.0)
         for sums in parts:
             result = result + sums.mean(MAP)
             if self.channels.live:
                 result = result + sums.mean(MAP + 1)
+        dr.eval(result)
         return result
 
     def cache(
@@ -304,7 +307,8 @@ class TexelLight:
 
     def mean(self, irradiance_over_pi: mi.Color3f) -> float:
         """Mean over texels and channels: the one number that goes back to the host."""
-        return float(np.mean(self.to_host(irradiance_over_pi), dtype=np.float64))
+        rows = [np.sum(np.array(row), dtype=np.float64) for row in irradiance_over_pi]  # one at a time
+        return float(np.sum(rows)) / max(3 * self.n_texels, 1)
 
     def to_host(self, value: mi.Color3f) -> NDArray[np.float32]:
         """(N, 3) array."""

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from irradia.transport.backend import dr, mi
 from irradia.transport.texel_sums import TexelSums
 
+_NONE = 0xFFFFFFFF
 _OFFSETS = [(x, y) for y in (-1, 0, 1) for x in (-1, 0, 1)]
 
 
@@ -26,58 +27,61 @@ class NoiseMeter:
     def __init__(
         self, pixel: NDArray[np.uint32], chart: NDArray[np.uint32], shape: tuple[int, int, int]
     ) -> None:
-        self._pixel = mi.UInt32(pixel)
+        self._pixel, self._chart = mi.UInt32(pixel), mi.UInt32(chart)
         self._size = int(np.prod(shape))
         self._width = shape[2]
-        self._chart, self._places = chart, pixel
-        self._owner: mi.UInt32 | None = None  # made when it is first asked for: it takes as much as a page
+        self._texel_at: mi.UInt32 | None = None  # made when it is first asked for: it is as large as a page
         self.deviations = dr.zeros(mi.Float, len(pixel))
         self.rounds = dr.zeros(mi.Float, len(pixel))
 
-    def fold(self, total: TexelSums, part: TexelSums) -> TexelSums:
-        """Adds a round to the total and takes note of how far it lies from it (Chan et al. 1979)."""
+    def fold(self, total: TexelSums, part: TexelSums) -> None:
+        """Adds a round to the total and takes note of how far it lies from it (Chan et al. 1979).
+
+        Args:
+            total: Complete rounds, added to in place.
+            part: The round; nothing is left of it.
+        """
         before, now = mi.Float(total.rays), mi.Float(part.rays)
         gap = mi.luminance(part.mean()) - mi.luminance(total.mean())
         spread = dr.square(gap) * before * now / dr.maximum(before + now, 1.0)
         self.deviations = self.deviations + spread
         self.rounds = self.rounds + dr.select(part.rays > 0, 1.0, 0.0)
-        result = total.plus(part)
-        dr.eval(self.deviations, self.rounds, result.gathered, result.arrived, result.rays, result.samples)
-        return result
+        dr.eval(self.deviations, self.rounds)
+        total.absorb(part)
 
     def standard_error(self, total: TexelSums) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """(N,) standard error and mean of each texel's luminance, pooled; the one read-back."""
-        freedom = dr.maximum(self.rounds - 1.0, 0.0)
-        pages = dr.zeros(mi.Float, 4 * self._size)
-        rows = mi.Vector4f(self.deviations, freedom, mi.luminance(total.mean()), 0.0)
-        dr.scatter(pages, rows, self._pixel)
-        dr.eval(pages)
-        if self._owner is None:
-            self._owner = self._owners()
-        owner = dr.gather(mi.UInt32, self._owner, self._pixel)
+        freedom, luminance = dr.maximum(self.rounds - 1.0, 0.0), mi.luminance(total.mean())
+        dr.eval(freedom, luminance)
+        if self._texel_at is None:
+            self._texel_at = self._texel_of_pixels()
         pooled, count = mi.Vector3f(0.0), mi.Float(0.0)
         for x, y in _OFFSETS:
             near = mi.Int32(self._pixel) + (y * self._width + x)
             inside = (near >= 0) & (near < self._size)
-            inside &= dr.gather(mi.UInt32, self._owner, mi.UInt32(near), inside) == owner
-            value = dr.gather(mi.Vector4f, pages, mi.UInt32(near), inside)
-            pooled += dr.select(inside, mi.Vector3f(value.x, value.y, value.z), 0.0)
+            texel = dr.gather(mi.UInt32, self._texel_at, mi.UInt32(near), inside)
+            inside &= texel != _NONE
+            inside &= dr.gather(mi.UInt32, self._chart, texel, inside) == self._chart
+            for row, column in enumerate((self.deviations, freedom, luminance)):
+                pooled[row] += dr.gather(mi.Float, column, texel, inside)
             count += dr.select(inside, 1.0, 0.0)
         variance = pooled.x / dr.maximum(pooled.y, 1.0)
         error = dr.sqrt(variance / dr.maximum(mi.Float(total.rays), 1.0))
-        both = np.array(mi.Point2f(error, pooled.z / count))
-        return both[0], both[1]
+        mean = pooled.z / count
+        dr.eval(error, mean)
+        return np.array(error), np.array(mean)
 
     def release(self) -> None:
         """Gives its memory back."""
-        self._owner = None
+        self._texel_at = None
         self.deviations, self.rounds = mi.Float(), mi.Float()
 
-    def _owners(self) -> mi.UInt32:
-        """The chart of every pixel."""
-        owner = np.full(self._size, 0xFFFFFFFF, np.uint32)
-        owner[self._places] = self._chart
-        return mi.UInt32(owner)
+    def _texel_of_pixels(self) -> mi.UInt32:
+        """Which texel lies at every pixel, or _NONE."""
+        texel_at = dr.full(mi.UInt32, _NONE, self._size)
+        dr.scatter(texel_at, dr.arange(mi.UInt32, len(self._pixel)), self._pixel)
+        dr.eval(texel_at)
+        return texel_at
 
     @property
     def knows(self) -> bool:

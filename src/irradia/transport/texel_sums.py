@@ -87,6 +87,18 @@ class TexelSums:
         arrived = [a + b for a, b in zip(self.arrived, other.arrived, strict=True)]
         return TexelSums(gathered, arrived, self.rays + other.rays, self.samples + other.samples)
 
+    def absorb(self, other: TexelSums) -> None:
+        """Adds the other's, column by column, and leaves it without: a map of sums need not stand thrice."""
+        for mine, more in ((self.gathered, other.gathered), (self.arrived, other.arrived)):
+            for old, new in zip(mine, more, strict=True):
+                for row in range(3):
+                    old[row] = old[row] + new[row]
+                    dr.eval(old[row])
+                    new[row] = mi.Float()
+        self.rays, self.samples = self.rays + other.rays, self.samples + other.samples
+        dr.eval(self.rays, self.samples)
+        other.rays, other.samples = mi.UInt32(), mi.UInt32()
+
     def where(self, mask: mi.Bool, other: TexelSums) -> TexelSums:
         """These sums where the mask holds, the other's elsewhere."""
         gathered = [dr.select(mask, a, b) for a, b in zip(self.gathered, other.gathered, strict=True)]
@@ -97,7 +109,7 @@ class TexelSums:
     def without_rays(self) -> TexelSums:
         """The next-event samples alone."""
         empty = TexelSums.empty(len(self.rays), len(self.gathered))
-        return TexelSums(empty.gathered, self.arrived, empty.rays, self.samples)
+        return TexelSums(empty.gathered, [mi.Color3f(c) for c in self.arrived], empty.rays, self.samples)
 
     def counting_from(self, rays: int, samples: int) -> TexelSums:
         """The same sums, counted as if so many samples came before them."""
