@@ -12,8 +12,8 @@ import pytest
 
 from irradia.bake.probes.gather import bake_probes
 from irradia.bake.probes.options import ProbeOptions
-from irradia.core.sh import fibonacci_sphere, irradiance
 from irradia.core import InputError, silent_progress
+from irradia.core.sh import fibonacci_sphere, irradiance
 from irradia.formats.probes import EMPTY, FILLED, NO_PROBE, VALID, ProbeGrid, ProbeOctree
 from irradia.scene.builtin.shapes import box, centred_box, floor
 from irradia.scene.layout import LightmapLayout, Unwrap

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from irradia.core.sh import fibonacci_sphere, irradiance, sh_basis
 from irradia.bake.probes.window import band_weights, window
+from irradia.core.sh import fibonacci_sphere, irradiance, sh_basis
 
 
 @pytest.fixture(scope="module")

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.bake.probes.placement import Placement
-from irradia.core.sh import irradiance
 from irradia.bake.probes.survey import MAX_BACKS, quick_validity
 from irradia.core.progress import Stage
+from irradia.core.sh import irradiance
 from irradia.formats.probes import ProbeOctree
 from irradia.scene.merge import MergedMesh
 from irradia.scene.surface import sample_surface

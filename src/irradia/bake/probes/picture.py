@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from irradia.core.sh import irradiance
 from irradia.bake.probes.survey import REACH_IN_SPACINGS
+from irradia.core.sh import irradiance
 from irradia.formats.probes import EMPTY, FILLED, VALID, ProbeSet
 from irradia.scene.types import Camera
 

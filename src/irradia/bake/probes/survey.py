@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.bake.probes.octahedral import octahedral_directions
-from irradia.core.sh import fibonacci_sphere, sh_basis
 from irradia.core.progress import Stage
+from irradia.core.sh import fibonacci_sphere, sh_basis
 
 if TYPE_CHECKING:
     from irradia.transport.world import World
