@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from irradia.core.errors import InputError
 from irradia.core.progress import Progress, silent_progress
@@ -75,7 +76,7 @@ def round_tables(field: Field, bits: Bits, block: int = 0) -> QuantisedField:
     coded: dict[str, QuantisedTensor] = {}
     for name in encoding_tensors(field.spec):
         values = np.where(np.abs(tensors[name]) > UNTOUCHED, tensors[name], np.float32(0.0))
-        coded[name] = quantise(values, bits, block or values.size)
+        coded[name] = quantise(values, bits, block or _whole(values))
         tensors[name] = coded[name].values()
     for name in tensors.keys() - coded.keys():
         tensors[name] = to_halves(tensors[name], name).astype(np.float32)
@@ -131,6 +132,11 @@ def finish(
             coded = _with_network(coded, learnt)
             stage.advance(options.steps)
     return coded
+
+
+def _whole(values: NDArray[np.float32]) -> int:
+    """Values of a level (entries, features), or of one of several planes (plane, row, column, feature)."""
+    return values[0].size if values.ndim > 2 else values.size
 
 
 class _School:
