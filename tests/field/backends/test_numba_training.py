@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from irradia.core.rng import Seed
 from irradia.field.backend import AdamOptions, Rates, StepOptions, Stepper
 from irradia.field.backends.numba_backend import NumbaBackend
+from irradia.field.backends.numba_perceptron import train
 from irradia.field.backends.numpy_backend import NumpyBackend
 from irradia.field.encodings import HashGrid, Identity, SphericalHarmonics
 from irradia.field.init import new_state
@@ -114,6 +117,20 @@ def test_batches_of_changing_size_are_as_good(make_batch):
     losses, _ = trained(NumbaBackend(2).stepper(SPEC, new_state(SPEC, Seed(1)), StepOptions()), batches)
     expected, _ = trained(NumpyBackend().stepper(SPEC, new_state(SPEC, Seed(1)), StepOptions()), batches)
     assert losses == pytest.approx(expected, rel=1e-5)
+
+
+def test_any_kind_of_array_serves_without_compiling_anew(make_batch):
+    batch = make_batch(SPEC, 300)
+    readonly = batch.target.copy()
+    readonly.flags.writeable = False
+    strided = np.repeat(batch.target, 2, axis=0)[::2]
+    batches = [replace(batch, target=t) for t in (readonly, strided, batch.target.astype(np.float64))]
+    batches.append(replace(batch, x=np.asfortranarray(batch.x), normal=batch.normal.astype(np.float64)))
+    expected, _ = trained(NumbaBackend(2).stepper(SPEC, new_state(SPEC, Seed(1)), StepOptions()), [batch])
+    for other in batches:
+        found, _ = trained(NumbaBackend(2).stepper(SPEC, new_state(SPEC, Seed(1)), StepOptions()), [other])
+        assert found == expected
+    assert len(train.signatures) == 1
 
 
 def test_what_has_no_kernel_is_named(monkeypatch):

@@ -193,13 +193,15 @@ class NumbaStepper(Stepper):
         own = {name: learned.value for name, learned in self._encodings.items()}
         features = self._features.encode(batch.x, batch.normal, own)
         self._network.transposed[:] = self._network.matrices.transpose(0, 2, 1)
+        # Any other kind of array, such as a map of a file, would have the kernel compiled anew.
+        target = np.require(batch.target, np.float32, ["C", "A", "W", "E"])
         loss = LOSSES.index(self._options.loss)
         self._team.run(
             train,
             self._network,
             features,
             self._n_gradients,
-            batch.target,
+            target,
             loss,
             self._scratch,
             self._totals,
