@@ -63,7 +63,7 @@ def cached_arrays(
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as stored:
             return {name: stored[name] for name in stored.files}
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-        arrays = make()
+        made: dict[str, Any] = {**make()}
     with contextlib.suppress(OSError), write_atomic(path) as stream:
-        np.savez(stream, **arrays)
-    return arrays
+        np.savez(stream, **made)
+    return made

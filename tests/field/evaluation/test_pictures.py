@@ -26,6 +26,8 @@ def test_of_the_truth_only_noise_is_seen_and_the_flags_say_so():
     for name in ("relmse", "psnr_db", "p95"):
         figure = getattr(scores, name)
         assert figure.value == pytest.approx(figure.noise, rel=0.1), name
+    # A half is a noisier reference than the mean, so that this errs a little towards too little noise.
+    assert scores.flip.value == pytest.approx(scores.flip.noise, rel=0.3)
     assert scores.mean_ratio.is_noise
     assert abs(scores.relmse_noise_free) < 0.1 * scores.relmse.value
 
