@@ -247,3 +247,16 @@ def test_missing_file_is_an_input_error(path: Path) -> None:
 def test_validation_samples_lie_beside_those_of_training() -> None:
     assert validation_path(Path("a/room.samples")) == Path("a/room.validation.samples")
     assert validation_path(Path("room.bin")) == Path("room.validation.bin")
+
+
+def test_any_flipped_byte_of_the_header_is_refused_or_harmless(path: Path) -> None:
+    for at in range(32 + len(TEXT)):
+        for flip in (0x01, 0x20, 0x80, 0xFF):
+            damaged = bytearray(GOLDEN)
+            damaged[at] ^= flip
+            path.write_bytes(damaged)
+            try:
+                found = open_samples(path)
+            except InputError:
+                continue
+            np.testing.assert_array_equal(found.rows, ROWS[: len(found)])
