@@ -223,10 +223,12 @@ def test_ctrl_c_leaves_a_usable_field_and_resume_gives_the_bytes_of_never_having
     assert not interrupted["complete"]
     assert 0 < interrupted["steps"] < 3000
     assert read_field(stopped).field.spec.width == 8
+    assert stopped.with_name("f.checkpoint.npz").exists()
     code, resumed = train(data, "-o", stopped, "--resume", quick=steps)
     assert code == 0
     assert resumed["validation"] == said["validation"]
     assert stopped.read_bytes() == whole.read_bytes()
+    assert not stopped.with_name("f.checkpoint.npz").exists()
     logged = [line.split(",")[0] for line in stopped.with_name("f.training.csv").read_text().splitlines()]
     assert logged[-1] == "3000"
     assert len(set(logged)) == len(logged)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -25,6 +26,7 @@ from irradia.field.training import (
     Validated,
     train,
 )
+from irradia.field.training.checkpoint import load_checkpoint
 
 OPTIONS = TrainOptions(steps=40, batch_size=64, validate_every=10, lr_network=0.01)
 
@@ -86,15 +88,26 @@ def test_a_killed_training_goes_on_from_its_last_checkpoint(finished, spec, samp
     assert same(resumed.parameters, finished(samples, options).parameters)
 
 
-def test_time_spent_before_an_interruption_counts(finished, samples, tmp_path):
-    options = TrainOptions(steps=None, time_s=0.3, batch_size=64)
-    path = tmp_path / "stopped.npz"
-    taken = []
-    stopped = finished(samples, options, checkpoint=path, stop=lambda: len(taken) > 50 or taken.append(1))
-    resumed = finished(samples, options, checkpoint=path, resume=True)
-    assert resumed.why == "time"
-    assert 0.3 <= resumed.spent_s < 0.3 + stopped.spent_s + 1.0
-    assert resumed.step > stopped.step == 51
+def test_time_spent_before_an_interruption_counts(run, samples, tmp_path):
+    options = TrainOptions(steps=None, time_s=0.4, batch_size=64)
+    path, taken = tmp_path / "stopped.npz", []
+    stop = lambda: len(taken) >= 50 or taken.append(time.sleep(0.004))  # noqa: E731
+    stopped = run(samples, options, checkpoint=path, stop=stop)[-1]
+    resumed = run(samples, options, checkpoint=path, resume=True)
+    first, last = next(event for event in resumed if isinstance(event, Stepped)), resumed[-1]
+    assert stopped.spent_s > 0.2
+    assert first.spent_s > 0.2
+    assert (first.step, last.why) == (51, "time")
+
+
+def test_stopping_is_no_validation(run, samples, tmp_path):
+    options = replace(OPTIONS, early_stop=1)
+    path, taken = tmp_path / "stopped.npz", []
+    events = run(samples, options, checkpoint=path, stop=lambda: len(taken) >= 17 or taken.append(1))
+    judged = [event for event in events if isinstance(event, Validated)]
+    assert [event.step for event in judged] == [10]
+    course = load_checkpoint(path).course
+    assert (course.best_relmse, course.n_worse) == (judged[0].figures.relmse, 0)
 
 
 def test_a_time_budget_brings_the_rates_to_their_end(samples, spec):
@@ -204,24 +217,30 @@ def test_training_ends_when_validation_stops_improving(finished, samples):
     assert (last.why, last.step) == ("early stop", 40)  # the first is the best, three more are not
 
 
-def test_early_stop_keeps_the_best_parameters(run, samples):
-    errors = iter([5.0, 1.0, 2.0, 3.0, 4.0, 4.0])
+class Scripted(NumpyBackend):
+    """Answers with the constants of a list, one for each evaluator after that of the warm-up."""
 
-    class Scripted(NumpyBackend):
-        def evaluator(self, spec, parameters):
-            inner = super().evaluator(spec, parameters)
-            if len(seen) < 1:  # the warm-up
-                seen.append(parameters)
-                return inner
-            seen.append(parameters)
-            factor = np.float32(1.0 + next(errors))
-            return lambda x, normal: inner(x, normal) * 0 + factor
+    def __init__(self, *constants: float) -> None:
+        self.constants = iter((1.0, *constants))
+        self.parameters = []
 
-    seen = []
-    options = replace(OPTIONS, steps=1000, early_stop=3)
-    last = run(samples, options, backend=Scripted())[-1]
-    assert last.why == "early stop"
-    assert same(last.parameters, seen[2])
+    def evaluator(self, spec, parameters):
+        self.parameters.append(parameters)
+        constant = np.float32(next(self.constants))
+        return lambda x, normal: np.full((len(x), spec.n_outputs), constant)
+
+
+def test_early_stop_keeps_the_best_parameters(finished, samples):
+    backend = Scripted(5.0, 1.0, 2.0, 3.0, 4.0, 1.0)
+    last = finished(samples, replace(OPTIONS, steps=1000, early_stop=3), backend=backend)
+    assert (last.why, last.step) == ("early stop", 50)
+    assert same(last.parameters, backend.parameters[2])
+
+
+def test_hardly_better_is_not_better(finished, samples):
+    backend = Scripted(5.0, *(5.0 - 1e-5 * i for i in range(1, 9)))
+    last = finished(samples, replace(OPTIONS, steps=1000, early_stop=3), backend=backend)
+    assert last.step == 40
 
 
 def test_held_out_blocks_are_judged_apart(finished, samples):

@@ -95,7 +95,7 @@ def _read(samples: SampleFile, kept_back: HeldOut) -> Generator[Working, None, F
     filled = 0
     for first in range(0, n, _CHUNK_ROWS):
         yield Working("Read samples", first, n, "rows")
-        chunk = np.array(samples.rows[first : first + _CHUNK_ROWS])
+        chunk = samples.rows[first : first + _CHUNK_ROWS]
         chunk = chunk[kept_back.learned(np.arange(first, first + len(chunk)), chunk[:, :3])]
         rows[filled : filled + len(chunk)] = chunk
         filled += len(chunk)

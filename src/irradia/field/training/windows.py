@@ -78,8 +78,7 @@ class WindowSource(BatchSource):
         for number in wanted:
             if number not in kept:
                 kept[number] = self._read(number)
-        # The slot of a group stays while it is there; that is the order in which rows are numbered.
-        return [kept[number] for number in sorted(wanted, key=lambda each: each % N_GROUPS)]
+        return [kept[number] for number in wanted]
 
     def _read(self, number: int) -> F32:
         """Packed rows of one group, counted over all passes."""
