@@ -1,0 +1,1 @@
+"""What we are compared with; each runs in an environment of its own."""
