@@ -134,13 +134,20 @@ def test_defaults_are_the_unity_projects():
     assert {name: parsed.params[name] for name in expected} == expected
 
 
-def test_without_steps_or_time_there_are_five_thousand(tmp_path):
-    from irradia.cli.train_job import TrainJob
+@pytest.mark.parametrize(
+    ("wish", "steps", "time_s"),
+    [((), 5000, None), (("--time", "9"), None, 9.0), (("--time", "9", "--steps", "7"), 7, 9.0)],
+)
+def test_without_steps_or_time_there_are_five_thousand_steps(wish, steps, time_s):
+    from irradia.cli.train import command, make_job
 
-    assert TrainJob(tmp_path / "a.samples", tmp_path / "b.safetensors").options.steps == 5000
+    choices = command.make_context("train", ["a.samples", "-o", "b.safetensors", *wish]).params
+    del choices["as_json"]
+    options = make_job(set(), **choices).options
+    assert (options.steps, options.time_s) == (steps, time_s)
 
 
-def test_time_alone_sets_no_number_of_steps(train, data, tmp_path):
+def test_training_ends_with_its_time(train, data, tmp_path):
     quick = (*SMALL, "--time", "0.3", "--batch-size", "64", "--backend", "numpy")
     code, said = train(data, "-o", tmp_path / "f.safetensors", quick=quick)
     assert code == 0
