@@ -254,7 +254,7 @@ _COUNT = options.Whole(1, 1 << 30)
 @options.json_option
 @click.pass_context
 def command(ctx: click.Context, as_json: bool, **choices: Any) -> int:
-    """Train a neural field.
+    """Train a neural field from a dataset.
 
     DATA is a file of samples, .samples or the Unity project's .bin; it may still be growing. Beside the
     field a log is written as .training.csv, and its curves as .training.svg. Ctrl-C leaves a usable field.
