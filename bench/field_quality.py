@@ -40,14 +40,14 @@ ROOMS = "builtin:rooms"
 def main() -> None:
     """Measures what has no row yet, then writes the page and the plot."""
     arguments = _parse()
-    rows = Rows(RESULTS / "field_quality.jsonl")
+    rows = Rows(arguments.results / "field_quality.jsonl")
     if not arguments.report:
         bench = Bench(arguments.work, rows, _settings(arguments))
         for place in _places(arguments):
             bench.measure(place, arguments.only)
-    plot_flip_over_bytes(rows.all(), RESULTS / "field_quality.svg")
+    plot_flip_over_bytes(rows.all(), arguments.results / "field_quality.svg")
     page = quality_page(rows.all(), sys.argv[1:])
-    write_text_atomic(RESULTS / "field_quality.md", page)
+    write_text_atomic(arguments.results / "field_quality.md", page)
     print(page)
 
 
@@ -62,6 +62,7 @@ def _parse() -> argparse.Namespace:
     parser.add_argument("--rays", type=int, default=64, help="at each")
     parser.add_argument("--reference-spp", type=int, default=1024)
     parser.add_argument("--work", type=Path, default=Path("out/field-quality"))
+    parser.add_argument("--results", type=Path, default=RESULTS)
     parser.add_argument("--report", action="store_true", help="measure nothing")
     return parser.parse_args()
 

@@ -29,9 +29,10 @@ class Rows:
             found[row["scene"], row["name"]] = row
         return list(found.values())
 
-    def has(self, scene: str, name: str) -> bool:
-        """Whether it was measured."""
-        return any((row["scene"], row["name"]) == (scene, name) for row in self.all())
+    def has(self, scene: str, name: str, settings: Row) -> bool:
+        """Whether it was measured under the same settings."""
+        wanted = (scene, name, settings)
+        return any((row["scene"], row["name"], row["settings"]) == wanted for row in self.all())
 
     def add(self, row: Row) -> None:
         """Appends one."""

@@ -13,12 +13,16 @@ from typing import Any
 from irradia.core.device import cpu_name
 from irradia.core.provenance import source_commit
 from irradia.field.encodings import HashGrid
+from irradia.field.files import load_field, save_field
 from irradia.field.presets import PRESETS, Preset
+from irradia.field.quantise import FinishOptions, finish
+from irradia.field.quantised import Bits
 from irradia.field.registry import print_spec
 from irradia.field.spec import FieldSpec
+from irradia.formats.samples import open_samples
 from support.field_rows import Row, Rows
 
-EIGHTH = "hash-200kB"  # the preset that is rounded in three ways, and whose leaks are measured
+SEVERAL_BITS = "hash-200kB"  # the preset that is rounded in three ways, and whose leaks are measured
 BASELINES = "sh1,sh2,visibility,lightmap"  # beside the hash grids, in as many bytes
 SH_MODE = FieldSpec(HashGrid(8, 17, 2, 16, 512), None, 32, 2, mode="sh1", head="linear")
 """As one row of the Unity project's table, which names the same architecture."""
@@ -75,41 +79,44 @@ class Bench:
 
     def measure(self, place: Place, only: list[str] | None) -> None:
         """All rows of a scene, or those that ``only`` names."""
-        for name, preset in self._presets(place).items():
+        presets = {SEVERAL_BITS: PRESETS[SEVERAL_BITS]} if place.leaks_only else PRESETS
+        for name, preset in presets.items():
             if only is None or name in only or _kind(name) in only:
-                self._field(place, name, preset)
-        if place.leaks_only:
-            return
+                self._preset(place, name, preset)
         if place.spec == "builtin:atrium" and (only is None or "sh-mode" in only):
             self._sh_mode(place)
 
-    def _presets(self, place: Place) -> dict[str, Preset]:
-        """Every preset, and one in other bits."""
-        if place.leaks_only:
-            return {EIGHTH: PRESETS[EIGHTH]}
-        spec = PRESETS[EIGHTH].spec
-        other = {f"bits-{bits or 16} of {EIGHTH}": Preset(spec, bits) for bits in (4, None)}
-        return {**PRESETS, **other}
+    def _preset(self, place: Place, name: str, preset: Preset) -> None:
+        """One training, and what comes of it in so many bits."""
+        self._field(place, name, name, preset, preset.bits)
+        if name == SEVERAL_BITS and not place.leaks_only:
+            for bits in (4, None):
+                self._field(place, f"bits-{bits or 16} of {name}", name, preset, bits)
 
-    def _field(self, place: Place, name: str, preset: Preset) -> None:
-        if self._rows.has(scene_name(place.spec), name):
+    def _field(self, place: Place, row: str, name: str, preset: Preset, bits: Bits | None) -> None:
+        if self._rows.has(scene_name(place.spec), row, asdict(self._settings)):
             return
-        weights = self._folder(place) / f"{name.replace(' ', '-')}.safetensors.zst"
-        trained = self._train(self._samples(place, "volume"), weights, preset)
-        beside = BASELINES if name in PRESETS and _kind(name) == "hash" and not place.leaks_only else "none"
+        trained = self._folder(place) / f"{name}.{self._settings.train_s:g}s.safetensors"
+        data = self._samples(place, "volume")
+        how = self._train(data, trained, preset)
+        weights = self._folder(place) / f"{row.replace(' ', '-')}.safetensors.zst"
+        _round(trained, weights, bits, data, preset.batch_size)
+        beside = BASELINES if row == name and _kind(name) == "hash" and not place.leaks_only else "none"
         judged = self._judge(place, weights, beside)
-        self._keep(
-            place, name, {"trained": trained, "query": judged["query"], **_figures(judged["rivals"][0])}
-        )
-        for rival in judged["rivals"][1:]:
+        field, *rivals = judged["rivals"]
+        self._keep(place, row, {"trained": how, "query": judged["query"], **_figures(field)})
+        for rival in rivals:
             self._keep(place, f"{rival['key']} beside {name}", _figures(rival))
 
     def _sh_mode(self, place: Place) -> None:
         name = "sh-mode"
-        if self._rows.has(scene_name(place.spec), name):
+        if self._rows.has(scene_name(place.spec), name, asdict(self._settings)):
             return
-        weights = self._folder(place) / f"{name}.safetensors"
-        trained = self._train(self._samples(place, "sh-random"), weights, Preset(SH_MODE, None))
+        plain = self._folder(place) / f"{name}.{self._settings.train_s:g}s.safetensors"
+        weights = plain.with_name(f"{name}.safetensors.zst")
+        data, preset = self._samples(place, "sh-random"), Preset(SH_MODE, None)
+        trained = self._train(data, plain, preset)
+        _round(plain, weights, None, data, preset.batch_size)
         self._keep(place, name, {"trained": trained, "n_bytes": weights.stat().st_size})
 
     def _samples(self, place: Place, kind: str) -> Path:
@@ -121,14 +128,17 @@ class Bench:
         return path
 
     def _train(self, data: Path, weights: Path, preset: Preset) -> dict[str, Any]:
-        spec = weights.with_suffix(".spec.json")
-        spec.write_text(print_spec(preset.spec), encoding="utf-8")
-        rounding = [] if preset.bits is None else ["--finish", f"int{preset.bits}"]
-        how = ["--time", str(self._settings.train_s), "--batch-size", str(preset.batch_size)]
-        how += ["--lr-encoding", str(preset.lr_encoding), "--lr-network", str(preset.lr_network)]
-        done = _irradia("train", data, "-o", weights, "--spec", spec, *how, *rounding)
-        kept = ("train_s", "steps", "batch_size", "validation", "parameters", "samples_per_s", "backend")
-        return {key: done[key] for key in kept}
+        """Trains, unless that was done; returns what is worth keeping of it."""
+        summary = weights.with_suffix(".json")
+        if not summary.exists():
+            spec = weights.with_suffix(".spec.json")
+            spec.write_text(print_spec(preset.spec), encoding="utf-8")
+            how = ["--time", self._settings.train_s, "--batch-size", preset.batch_size, "--precision", "fp32"]
+            how += ["--lr-encoding", preset.lr_encoding, "--lr-network", preset.lr_network]
+            done = _irradia("train", data, "-o", weights, "--spec", spec, *how)
+            kept = ("train_s", "steps", "batch_size", "validation", "parameters", "samples_per_s", "backend")
+            summary.write_text(json.dumps({key: done[key] for key in kept}), encoding="utf-8")
+        return json.loads(summary.read_text(encoding="utf-8"))
 
     def _judge(self, place: Place, weights: Path, baselines: str) -> dict[str, Any]:
         looks = ["--pixels", str(N_PIXELS), "--reference-spp", str(self._settings.reference_spp)]
@@ -142,9 +152,20 @@ class Bench:
         self._rows.add({"scene": scene_name(place.spec), "name": name, **values, **about})
 
     def _folder(self, place: Place) -> Path:
-        folder = self._work / scene_name(place.spec)
+        s = self._settings
+        folder = self._work / scene_name(place.spec) / f"{s.samples}x{s.rays}"
         folder.mkdir(parents=True, exist_ok=True)
         return folder
+
+
+def _round(trained: Path, weights: Path, bits: Bits | None, data: Path, batch_size: int) -> None:
+    """Writes a trained field with its tables in so many bits, or as halves."""
+    field = load_field(trained)
+    if bits is None:
+        save_field(weights, field)
+    else:
+        options = FinishOptions(batch_size=batch_size)
+        save_field(weights, finish(field, bits, open_samples(data), options))
 
 
 def scene_name(spec: str) -> str:
