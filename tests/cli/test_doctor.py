@@ -12,6 +12,7 @@ from irradia.cli import app, machine
 from irradia.cli.machine import Check
 from irradia.core.device import CudaStatus
 from irradia.core.errors import MissingDependencyError
+from irradia.field.backends import backend, matrix, matrix_text
 
 
 def test_this_machine_is_ready_to_bake(capfd):
@@ -21,6 +22,16 @@ def test_this_machine_is_ready_to_bake(capfd):
     states = {check["name"]: check["state"] for check in said["checks"]}
     assert states["Python"] == states["libLLVM"] == states["Denoiser"] == "ok"
     assert {"CUDA, OptiX", "Node.js", "Chromium", "Cache", "Packages"} <= set(states)
+
+
+def test_the_backends_of_fields_are_listed(capfd):
+    assert app.run(["doctor", "--json"]) == 0
+    table = json.loads(capfd.readouterr().out)["field_backends"]
+    assert table == matrix()
+    assert app.run(["doctor"]) == 0
+    shown = capfd.readouterr().out
+    assert matrix_text() in shown
+    assert f"--backend auto starts with {backend('auto').name}" in shown
 
 
 def test_something_missing_is_exit_code_2_with_the_cure(monkeypatch, capfd):

@@ -24,10 +24,11 @@ def command(as_json: bool) -> int:
     missing = [check for check in checks if check.state == "missing"]
     lines = [line for check in checks for line in _lines(check)]
     verdict = "Ready to bake." if not missing else f"Not ready: {len(missing)} to mend, see above."
+    fields, table = _fields()
     finish(
         as_json,
-        {"ready": not missing, "checks": [asdict(check) for check in checks]},
-        "\n".join([*lines, "", verdict]),
+        {"ready": not missing, "checks": [asdict(check) for check in checks], "field_backends": fields},
+        "\n".join([*lines, "", table, verdict]),
     )
     return 2 if missing else 0
 
@@ -36,3 +37,11 @@ def _lines(check: Check) -> list[str]:
     """One line, and another with the cure where there is something to cure."""
     first = f"{_MARKS[check.state]}  {check.name:<12}  {check.found}"
     return [first, f"{'':<23}{check.fix}"] if check.fix else [first]
+
+
+def _fields() -> tuple[dict[str, dict[str, bool]], str]:
+    """Which backend computes which encoding of a field, and a table of it."""
+    from irradia.field.backends import backend, matrix, matrix_text
+
+    head = f"Neural fields, encoding by backend; --backend auto starts with {backend('auto').name}:"
+    return matrix(), f"{head}\n\n{matrix_text()}"

@@ -31,6 +31,7 @@ PACKAGES = (
     "OpenEXR",
     "PIL",
     "pyoidn",
+    "safetensors",
     "scipy",
     "xatlas",
     "zstandard",

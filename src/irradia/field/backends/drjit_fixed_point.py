@@ -25,16 +25,18 @@ def room_for(n: int) -> int:
     return 315 - math.ceil(math.log2(max(n, 2)))
 
 
-def scale_of(jit: ModuleType, peak: F, room: U) -> tuple[F, F]:
+def scale_of(jit: ModuleType, gradients: F, room: U) -> tuple[F, F]:
     """Powers of two to multiply with before adding and after.
 
     Args:
         jit: Array types.
-        peak: Largest magnitude of a gradient, one value. Where it isn't finite, all sums come out as NaN.
+        gradients: All that will be added. If one isn't finite, all sums come out as NaN.
         room: From :func:`room_for`.
     """
-    bits: U = dr.reinterpret_array(jit.UInt, peak)
-    exponent = bits >> _EXPONENT
+    # As whole numbers, floats without sign are in the same order, and above them all is what isn't a number.
+    bits: U = dr.reinterpret_array(jit.UInt, dr.abs(gradients))
+    exponent: U = dr.max(bits) >> _EXPONENT
+    # These are all powers that are normal floats; the last bits of gradients below 1e-25 are lost to that.
     stored = dr.clip(jit.Int(room) - jit.Int(exponent), 1, 253)
     before = dr.reinterpret_array(jit.Float, jit.UInt(stored) << _EXPONENT)
     after = dr.reinterpret_array(jit.Float, jit.UInt(254 - stored) << _EXPONENT)

@@ -1,9 +1,8 @@
 """The perceptron in Dr.Jit: batched matrix products over tiles, a kernel between them.
 
 Products are Dr.Jit's own of tensors, in float32 and with the same bits on any number of threads. Its
-cooperative vectors (``drjit.nn.CoopVec``) would put all layers into one kernel, but on CUDA they exist for
-halves only, and on the CPU they ran at a tenth of this speed and add gradients in whatever order threads
-come.
+cooperative vectors (``drjit.nn.CoopVec``) would put all layers into one kernel, but on CUDA they are made for
+halves, and everywhere they add gradients in whatever order threads come; on the CPU they were no faster.
 
 Matrices are (out, rows) with the bias in the column after the last input and zeros after that, which stay
 zero because the rows that they meet are.

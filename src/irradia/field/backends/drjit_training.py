@@ -111,7 +111,7 @@ class DrJitStepper(Stepper):
         if of_features is None:
             return tables
         jit, options = self._jit, self._options
-        before, after = scale_of(jit, dr.max(dr.abs(of_features)), inputs.room)
+        before, after = scale_of(jit, of_features, inputs.room)
         sums = {name: dr.zeros(jit.UInt64, dr.width(tables[name][0])) for name in sorted(self._learning)}
         n_rows = whole_rows(self._spec.n_inputs)
         for each, own in zip(self._placed, inputs.constants, strict=True):
