@@ -27,6 +27,7 @@ from irradia.field.training.start import inference_parameters, state_of
 from irradia.formats.samples import SampleFile
 
 MAX_ROWS = 1 << 22
+_LEFT = 0.01  # of learning rates, at the end
 # Values of an untouched entry of a hash grid are smaller than this, for they begin there: they become 0.
 UNTOUCHED = 1e-4
 
@@ -42,7 +43,7 @@ class FinishOptions:
         steps: With frozen tables.
         batch_size: Samples a step.
         loss: See :mod:`irradia.field.losses`.
-        lr_encoding, lr_network: Learning rates; they fall exponentially to a tenth over all steps.
+        lr_encoding, lr_network: Learning rates; they fall exponentially to a hundredth over all steps.
         average: Decay of the running mean that the perceptron is taken from.
         seed: Root of all randomness.
     """
@@ -169,7 +170,7 @@ class _School:
         return inference_parameters(replace(self._state, step=steps), how)
 
     def _rates(self, step: int) -> Rates:
-        left = 0.1 ** (step / self._total)
+        left = _LEFT ** (step / self._total)
         return Rates(self._options.lr_encoding * left, self._options.lr_network * left)
 
 
