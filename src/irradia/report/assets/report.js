@@ -124,6 +124,28 @@ document.addEventListener("keydown", (event) => {
   nearest.buttons[Number(event.key) - 1]?.click();
 });
 
+/** A click on a heading sorts its table by that column; another turns the order round. */
+for (const table of document.querySelectorAll("table.sortable")) {
+  const headings = [...table.querySelectorAll("th")];
+  const body = table.tBodies[0];
+  table.querySelector("thead").addEventListener("click", (event) => {
+    const button = event.target.closest("button");
+    if (!button) return;
+    const column = Number(button.dataset.column);
+    const heading = headings[column];
+    const falling = heading.getAttribute("aria-sort") === "ascending";
+    for (const each of headings) each.removeAttribute("aria-sort");
+    heading.setAttribute("aria-sort", falling ? "descending" : "ascending");
+    const value = (row) => row.cells[column].dataset.value ?? "";
+    const order = (a, b) => value(a).localeCompare(value(b), undefined, { numeric: true });
+    const numbers = (a, b) => Number(value(a)) - Number(value(b));
+    const rows = [...body.rows];
+    const compare = rows.every((row) => Number.isFinite(Number(value(row)))) ? numbers : order;
+    rows.sort((a, b) => (falling ? compare(b, a) : compare(a, b)));
+    body.append(...rows);
+  });
+}
+
 const lightbox = document.getElementById("lightbox");
 for (const image of document.querySelectorAll(".page img, .pair img")) {
   image.addEventListener("click", () => {
