@@ -22,7 +22,7 @@ class IrradiaSide(Side):
         settings = task.settings
         self.task = task
         self.spec = spec_from_dict(settings["spec"])
-        self.backend = backend(name, self.spec)
+        self.backend = backend(name, self.spec, settings["threads"])
         self.options = StepOptions(
             loss=settings["loss"],
             encoding_adam=AdamOptions(**settings["encoding_adam"]),
