@@ -150,3 +150,14 @@ def at_the_edges(batch):
 def test_composed_encodings_learn_each_their_own_part(check):
     position = Composite((TriPlane(6, 3), GRID, Identity(), HashGrid(2, 5, 2, 2, 9)))
     check(FieldSpec(position, Composite((Identity(), SphericalHarmonics(2))), width=16))
+
+
+@pytest.mark.parametrize("position", [GRID, TriPlane(5, 2)], ids=str)
+def test_a_point_that_is_no_number_has_no_light_and_takes_none(position, drjit, make_batch):
+    spec = FieldSpec(position, Identity(), width=8)
+    batch, evaluator = make_batch(spec, N), drjit.evaluator(spec, parameters_of(spec))
+    expected = evaluator(batch.x, batch.normal)
+    batch.x[3, 1] = np.nan
+    found = evaluator(batch.x, batch.normal)
+    assert np.isnan(found[3]).all()
+    np.testing.assert_array_equal(np.delete(found, 3, 0), np.delete(expected, 3, 0))

@@ -129,6 +129,13 @@ def test_steps_launch_few_kernels_and_compile_none(drjit, make_batch):
         assert Counter(each["type"].name for each in later)["JIT"] == len(kernels)
 
 
+def test_evaluations_of_any_size_share_their_kernels(drjit, make_batch):
+    evaluator, batch = drjit.evaluator(SPEC, new_parameters(SPEC, Seed(1))), make_batch(SPEC, 1500)
+    evaluator(batch.x, batch.normal)
+    later = launched(lambda: [evaluator(batch.x[:n], batch.normal[:n]) for n in (2, 511, 1025)])
+    assert all(each["cache_hit"] for each in later if each["type"].name == "JIT")
+
+
 def launched(work) -> list:
     import drjit as dr
 

@@ -13,7 +13,7 @@ import drjit as dr
 import numpy as np
 
 from irradia.field.backends.drjit_encoding import Constants, Lookup
-from irradia.field.backends.drjit_table import DrJitTable
+from irradia.field.backends.drjit_table import DrJitTable, whole
 from irradia.field.backends.drjit_tiles import F, U
 from irradia.field.encodings.hash_grid import CORNERS, HashGrid
 
@@ -54,7 +54,7 @@ class DrJitHashGrid(DrJitTable[HashGrid]):
             # can't be: the compiler doesn't know that it adds 0.
             position = dr.fma(level["scale"], x, at.constants["zero"]) + level["offset"]
             cell = dr.floor(position)
-            cells.append(self.jit.UInt(cell))
+            cells.append(whole(self.jit, cell))
             fractions.append(position - cell)
         for corner in CORNERS:
             weight = self.jit.Float(1.0)

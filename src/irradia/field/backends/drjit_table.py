@@ -59,3 +59,8 @@ class DrJitTable(DrJitEncoding[T]):
         first = self.first // self.block_size
         for entry, weight in self.corners(at, grid):
             yield first + entry * self._n_groups + group, weight
+
+
+def whole(jit: ModuleType, cell: F) -> U:
+    """A cell's number as an index. That of a point which is no number is 0, so that nothing else is read."""
+    return jit.UInt(dr.select(cell >= 0.0, cell, 0.0))

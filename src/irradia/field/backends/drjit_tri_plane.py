@@ -8,7 +8,7 @@ from types import ModuleType
 import drjit as dr
 
 from irradia.field.backends.drjit_encoding import Constants, Lookup
-from irradia.field.backends.drjit_table import DrJitTable
+from irradia.field.backends.drjit_table import DrJitTable, whole
 from irradia.field.backends.drjit_tiles import F, U
 from irradia.field.encodings.tri_plane import PLANES, TriPlane
 
@@ -40,4 +40,4 @@ class DrJitTriPlane(DrJitTable[TriPlane]):
         position = dr.fma(self.jit.Float(scale), at.coordinate(axis), at.constants["zero"]) + offset
         position = dr.clip(position, 0.0, last)
         cell = dr.minimum(dr.floor(position), last - 1.0)
-        return self.jit.UInt(cell), position - cell
+        return whole(self.jit, cell), position - cell
