@@ -17,7 +17,7 @@ from irradia.formats.samples import SampleFile
 
 HELD_OUT_SHARE = 0.02  # of the rows, where there are no samples of their own for validation
 CELLS_PER_EDGE = 32  # blocks of space, along the longest edge of the box
-_MEASURED_ROWS = 1 << 20
+_MEASURED_BLOCKS, _BLOCK_ROWS = 64, 1 << 14  # a row apart from others costs the disk a page
 
 Keep = Callable[[NDArray[np.int64], F32], NDArray[np.bool_]]
 
@@ -146,7 +146,7 @@ def frame_of(samples: SampleFile) -> FieldFrame:
     Raises:
         InputError: A value isn't finite.
     """
-    values = np.abs(samples.values[spread(len(samples), _MEASURED_ROWS)])
+    values = np.abs(samples.values[_blocks(len(samples))])
     if not np.isfinite(values).all():
         raise InputError("expected finite values, found NaN or infinity", where=str(samples.path))
     mean = float(values.mean(dtype=np.float64))
@@ -167,6 +167,14 @@ def spread(n: int, at_most: int) -> NDArray[np.int64]:
     if n <= at_most:
         return np.arange(n)
     return np.arange(at_most) * n // at_most
+
+
+def _blocks(n: int) -> NDArray[np.int64]:
+    """Numbers of rows in blocks spread evenly over n; all of few."""
+    if n <= _MEASURED_BLOCKS * _BLOCK_ROWS:
+        return np.arange(n)
+    first = spread(n - _BLOCK_ROWS, _MEASURED_BLOCKS)
+    return (first[:, None] + np.arange(_BLOCK_ROWS)).ravel()
 
 
 def _hash(number: NDArray[np.uint64], key: int) -> NDArray[np.float64]:

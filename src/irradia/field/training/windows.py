@@ -53,7 +53,10 @@ class WindowSource(BatchSource):
         self._group_blocks = int(np.clip(affordable, 1, -(-self._n_blocks // N_GROUPS)))
         self._shift_steps = max(1, round(self._group_blocks * block_rows / batch_size))
         self._memory = LastMemory()
-        self._groups: dict[int, F32] = {}  # packed rows by number of the group
+        capacity = self._group_blocks * block_rows
+        self._slots = np.empty((N_GROUPS, capacity, samples.info.n_columns), np.float32)  # packed rows
+        self._numbers = np.full(N_GROUPS, -1)  # which group is in each slot
+        self._counts = np.zeros(N_GROUPS, np.int64)  # and how many rows
 
     @property
     def n_rows(self) -> int:
@@ -62,33 +65,35 @@ class WindowSource(BatchSource):
 
     def batch(self, step: int, size: int, seed: Seed) -> Batch:
         """See :class:`BatchSource`."""
-        groups = self._window(step // self._shift_steps)
-        ends = np.cumsum([len(group) for group in groups])
+        self._move_to(step // self._shift_steps)
+        ends = np.cumsum(self._counts)
         drawn = draw(int(ends[-1]), step, size, seed)
+        slot = np.searchsorted(ends, drawn, side="right")
+        gaps = np.arange(N_GROUPS) * self._slots.shape[1] - (ends - self._counts)
         info = self._samples.info
         memory = self._memory.of(size, info.n_columns, has_normals=info.has_normals)
-        _gather(groups, ends, drawn, memory.picked)
-        return memory.split()
+        return memory.take(self._slots.reshape(-1, info.n_columns), drawn + gaps[slot])
 
-    def _window(self, first: int) -> list[F32]:
-        """The groups in memory from the ``first``-th on, after reading those that are not there yet."""
-        wanted = range(first, first + N_GROUPS)
-        kept = {number: rows for number, rows in self._groups.items() if number in wanted}
-        self._groups = kept  # before others are read, so that no more than one window is in memory
-        for number in wanted:
-            if number not in kept:
-                kept[number] = self._read(number)
-        return [kept[number] for number in wanted]
+    def _move_to(self, first: int) -> None:
+        """Brings the groups from the ``first``-th on into memory, each to the slot of its number."""
+        for number in range(first, first + N_GROUPS):
+            slot = number % N_GROUPS
+            if self._numbers[slot] != number:
+                self._counts[slot] = self._read(number, self._slots[slot])
+                self._numbers[slot] = number
 
-    def _read(self, number: int) -> F32:
-        """Packed rows of one group, counted over all passes."""
-        pieces = []
+    def _read(self, number: int, into: F32) -> int:
+        """Reads one group, counted over all passes; returns the number of its rows."""
+        filled = 0
         for block in self._blocks(number):
             first = int(block) * self._block_rows
-            rows = np.array(self._samples.rows[first : first + self._block_rows])
+            rows = self._samples.rows[first : first + self._block_rows]
             learned = self._kept_back.learned(np.arange(first, first + len(rows)), rows[:, :3])
-            pieces.append(pack(rows[learned], self._samples.info.n_values, self._frame))
-        return np.concatenate(pieces)
+            n_learned = int(learned.sum())
+            into[filled : filled + n_learned] = rows[learned]
+            filled += n_learned
+        pack(into[:filled], self._samples.info.n_values, self._frame)
+        return filled
 
     def _blocks(self, number: int) -> NDArray[np.int64]:
         """Which blocks are in a group."""
@@ -96,12 +101,3 @@ class WindowSource(BatchSource):
         over, within = divmod(number, groups_per_pass)
         order = self._seed.child(f"pass-{over}").numpy().permutation(self._n_blocks)
         return order[within * self._group_blocks : (within + 1) * self._group_blocks]
-
-
-def _gather(groups: list[F32], ends: NDArray[np.int64], drawn: NDArray[np.int64], picked: F32) -> None:
-    """Fills ``picked`` with rows by their numbers in all groups together."""
-    slot = np.searchsorted(ends, drawn, side="right")
-    within = drawn - (ends - [len(group) for group in groups])[slot]
-    for number, group in enumerate(groups):
-        mine = slot == number
-        picked[mine] = group[within[mine]]
