@@ -158,8 +158,8 @@ def coded_file() -> tuple[dict, dict[str, np.ndarray]]:
 def put(holder: dict, path: str, value: object) -> None:
     *folders, last = path.split("/")
     for key in folders:
-        holder = holder[key]
-    holder[last] = value
+        holder = holder[int(key) if isinstance(holder, list) else key]
+    holder[int(last) if isinstance(holder, list) else last] = value
 
 
 @pytest.mark.parametrize(
@@ -186,6 +186,7 @@ def put(holder: dict, path: str, value: object) -> None:
         ("frame/aabb", [[0, 0, 0]], "AABB"),
         ("frame/aabb", [[0, 0, 0], [1, -1, 1]], "AABB"),
         ("frame/aabb", [[0, 0, 0], [1, "x", 1]], "numbers"),
+        ("frame/aabb/1/2", 1e300, "AABB"),
         ("frame/scale", 3.0, "power of two"),
         ("frame/scale", 0.0, "power of two"),
         ("frame/scale", None, "numbers"),

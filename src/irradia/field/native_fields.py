@@ -94,8 +94,9 @@ def _frame_from_dict(values: Mapping[str, Any], where: str) -> FieldFrame:
     if values.keys() != {"aabb", "scale", "quantity"}:
         raise InputError(f"expected aabb, scale and quantity, found {', '.join(values)}", where=where)
     try:
-        aabb, scale = np.array(values["aabb"], np.float32), float(values["scale"])
-    except (TypeError, ValueError) as error:
+        with np.errstate(over="ignore"):
+            aabb, scale = np.array(values["aabb"], np.float32), float(values["scale"])
+    except (TypeError, ValueError, OverflowError) as error:
         raise InputError(f"expected numbers: {error}", where=where) from error
     if aabb.shape != (2, 3) or not np.isfinite(aabb).all() or np.any(aabb[0] > aabb[1]):
         raise InputError(f"expected an AABB, found {values['aabb']}", where=where)

@@ -71,7 +71,7 @@ def _info(text: bytes, where: str) -> SampleInfo:
         values = json.loads(text)
         low, high = values.pop("aabb")
         return SampleInfo(aabb=(tuple(low), tuple(high)), **values)
-    except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError) as error:
         raise InputError(f"its header is damaged: {error}", where=where) from error
     except InputError as error:
         raise InputError(error.message, where=where) from error

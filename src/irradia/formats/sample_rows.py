@@ -53,7 +53,8 @@ class SampleInfo:
             raise InputError(f"expected samples a point of 0 or more, found {self.samples_per_point!r}")
         if not isinstance(self.provenance, Mapping):
             raise InputError(f"expected provenance by name, found {self.provenance!r}")
-        box = np.asarray(self.aabb, np.float64)
+        with np.errstate(over="ignore"):
+            box = np.asarray(self.aabb, np.float64).astype(np.float32)
         if box.shape != (2, 3) or not np.isfinite(box).all() or np.any(box[0] > box[1]):
             raise InputError(f"expected an AABB, found {box.tolist()}")
 
