@@ -5,7 +5,8 @@
     python bench/field_quality.py --only hash-200kB                    one preset, on all scenes
     python bench/field_quality.py --report                             only the page, from what is there
 
-Each scene is sampled once; then every preset (irradia.field.presets) is trained for --train-s seconds, its
+Fields hold indirect light: what the sun and punctual lamps send first is drawn live beside them. Each
+scene is sampled once; then every preset (irradia.field.presets) is trained for --train-s seconds, its
 tables are rounded and its file is judged by `irradia eval`: HDR-FLIP from the scene's first camera, and MSE
 at random places in free space. Beside the hash grids stand grids of SH probes and a lightmap in as many
 bytes. One preset is kept in 4 and 16 bits too, its leak ratio is measured in builtin:rooms, and on the atrium

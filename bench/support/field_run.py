@@ -26,6 +26,7 @@ SEVERAL_BITS = "hash-200kB"  # the preset that is rounded in three ways, and who
 BASELINES = "sh1,sh2,visibility,lightmap"  # beside the hash grids, in as many bytes
 SH_MODE = FieldSpec(HashGrid(8, 17, 2, 16, 512), None, 32, 2, mode="sh1", head="linear")
 """As one row of the Unity project's table, which names the same architecture."""
+INDIRECT = ("--quantity", "indirect")  # the sun and lamps are drawn live, as engines do
 N_PIXELS = 512 * 288
 
 
@@ -124,7 +125,7 @@ class Bench:
         if not path.exists():
             s = self._settings
             amount = ["--count", str(s.samples), "--samples", str(s.rays)]
-            _irradia("sample", place.spec, "-o", path, "--kind", kind, *amount, *place.light)
+            _irradia("sample", place.spec, "-o", path, "--kind", kind, *amount, *INDIRECT, *place.light)
         return path
 
     def _train(self, data: Path, weights: Path, preset: Preset) -> dict[str, Any]:

@@ -28,7 +28,7 @@ def baked(tmp_path_factory):
         layout=LayoutOptions(resolution=64),
         bake=BakeOptions(samples=16),
         views=ViewOptions(reference_spp=16, n_pixels=48 * 48, full_spp=1, baked_spp=2),
-        neural_field=FieldOptions("hash-50kB", n_samples=20_000, rays=16, train_s=3.0),
+        neural_field=FieldOptions("hash-50kB", "full", n_samples=20_000, rays=16, train_s=3.0),
     )
     run_bake(job, silent_progress())
     return out

@@ -12,6 +12,7 @@ import numpy as np
 from irradia.cli.eval_options import EvalJob, PictureOptions, SpaceOptions
 from irradia.core.errors import InternalError
 from irradia.core.progress import Progress
+from irradia.field.spec import Quantity
 
 if TYPE_CHECKING:
     from irradia.bake.datasets import BakedPages
@@ -35,6 +36,7 @@ class FieldOptions:
 
     Attributes:
         preset: Of :data:`irradia.field.presets.PRESETS`.
+        quantity: ``indirect`` leaves the first bounce of punctual lights to whoever draws.
         n_samples: Points in space and on surfaces.
         rays: At each.
         train_s: Seconds of training, before tables are rounded.
@@ -42,6 +44,7 @@ class FieldOptions:
     """
 
     preset: str = "hash-200kB"
+    quantity: Quantity = "indirect"
     n_samples: int = 400_000
     rays: int = 64
     train_s: float = 20.0
@@ -94,7 +97,7 @@ def field_of_bake(
         Path(FILE), scene.name, Path(), pictures=pictures, space=_SPACE, baselines=(), seed=options.seed
     )
     seen = [(view.camera, Reference(*view.halves))]
-    found = evaluate(job, in_quantity(scene, "full"), decode_field(data), progress, seen)
+    found = evaluate(job, in_quantity(scene, options.quantity), decode_field(data), progress, seen)
     shown = summary(job, found)
     shown = replace(shown, rivals=(*shown.rivals, _lightmap_rival(lightmap, view)))
     record = {"options": asdict(options), **rival_record(found.rivals[0])}
@@ -143,7 +146,13 @@ def draw_samples(
     from irradia.bake.datasets import SampleOptions, sample_info, sample_rows, set_up
     from irradia.formats.samples import SampleFile
 
-    asked = SampleOptions("volume", options.n_samples, samples=options.rays, seed=options.seed)
+    asked = SampleOptions(
+        "volume",
+        options.n_samples,
+        quantity=options.quantity,
+        samples=options.rays,
+        seed=options.seed,
+    )
     setting = set_up(scene, asked, lightmap, progress)
     files = []
     for name, how in (("train", asked), ("validation", asked.for_validation(_VALIDATION_POINTS))):

@@ -47,9 +47,9 @@ class Preset:
 
 
 PRESETS: dict[str, Preset] = {
-    "hash-50kB": Preset(FieldSpec(HashGrid(3, 13, 2, 16, 64), _NORMAL, 64, 2)),
-    "hash-200kB": Preset(FieldSpec(HashGrid(4, 15, 2, 16, 128), _NORMAL, 64, 3)),
-    "hash-1MB": Preset(FieldSpec(HashGrid(6, 17, 2, 16, 256), _NORMAL, 64, 3)),
+    "hash-50kB": Preset(FieldSpec(HashGrid(2, 13, 8, 5, 16), _NORMAL, 64, 2)),
+    "hash-200kB": Preset(FieldSpec(HashGrid(2, 15, 8, 8, 28), _NORMAL, 64, 3)),
+    "hash-1MB": Preset(FieldSpec(HashGrid(3, 17, 8, 8, 50), _NORMAL, 64, 3)),
     "triplane-50kB": Preset(FieldSpec(TriPlane(58, 4), _NORMAL, 64, 2)),
     "triplane-200kB": Preset(FieldSpec(TriPlane(88, 8), _NORMAL, 64, 3)),
     "triplane-1MB": Preset(FieldSpec(TriPlane(144, 16), _NORMAL, 64, 3)),
