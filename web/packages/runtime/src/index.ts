@@ -1,0 +1,39 @@
+/** Irradia's baked light in the browser: readers with strict checks, a readable evaluator, GPU textures. */
+export { InputError } from "./errors.js";
+export type { Encoding, TensorSlot, Vec3 } from "./field/encoding.js";
+export { Composite } from "./field/encodings/composite.js";
+export { Frequency } from "./field/encodings/frequency.js";
+export { HashGrid, type HashGridOptions, type HashLevel } from "./field/encodings/hash-grid.js";
+export { Identity } from "./field/encodings/identity.js";
+export { OneBlob } from "./field/encodings/one-blob.js";
+export { ENCODING_TYPES } from "./field/encodings/registry.js";
+export { SphericalHarmonics } from "./field/encodings/spherical-harmonics.js";
+export { TriPlane } from "./field/encodings/tri-plane.js";
+export { type Field, FieldEvaluator } from "./field/field.js";
+export { irradianceOf, irradianceWeights } from "./field/sh.js";
+export {
+  type Activation,
+  type FieldFrame,
+  type FieldSpec,
+  type Head,
+  type LayerShape,
+  layerShapes,
+  type Mode,
+  N_OUTPUTS,
+  nFeatures,
+  type Quantity,
+  tensorShapes,
+  toUnit,
+} from "./field/spec.js";
+export {
+  bitsPerValue,
+  type Codes,
+  type Floats,
+  type Halves,
+  storedBytes,
+  type Tensor,
+  tensorValues,
+} from "./field/tensor.js";
+export { readFieldBin } from "./formats/field-bin.js";
+export { type ReadFieldOptions, readField } from "./formats/field-safetensors.js";
+export type { UnpackOptions, Unzstd } from "./formats/zstd.js";
