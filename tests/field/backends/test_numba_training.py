@@ -12,7 +12,7 @@ from irradia.field.backend import AdamOptions, Rates, StepOptions, Stepper
 from irradia.field.backends.numba_backend import NumbaBackend
 from irradia.field.backends.numba_perceptron import train
 from irradia.field.backends.numpy_backend import NumpyBackend
-from irradia.field.encodings import HashGrid, Identity, SphericalHarmonics
+from irradia.field.encodings import Composite, HashGrid, Identity, SphericalHarmonics
 from irradia.field.init import new_state
 from irradia.field.spec import FieldSpec
 
@@ -139,4 +139,5 @@ def test_what_has_no_kernel_is_named(monkeypatch):
     monkeypatch.delitem(numba_encoding.ACCELERATED, "identity")
     backend = NumbaBackend(1)
     assert backend.lacks(FieldSpec(SPEC.position, Identity())) == "the encoding identity"
+    assert backend.lacks(FieldSpec(Composite((SPEC.position, Identity())), SphericalHarmonics(2)))
     assert backend.lacks(SPEC) is None
