@@ -23,14 +23,14 @@ def array_types(device: DeviceChoice = "auto", threads: int | None = None) -> Mo
         threads: On the CPU.
 
     Raises:
-        InputError: On an unknown device, or fewer threads than 1.
+        InputError: On fewer threads than 1.
         MissingDependencyError: If ``cuda`` was asked for in vain, or no libLLVM works.
     """
     if on_cuda(device):
         import drjit.cuda
 
         return drjit.cuda
-    # Aborts are all that a wrong libLLVM gives, so one is chosen before Dr.Jit is first imported.
+    # Before Dr.Jit is first imported, since it aborts the process on a libLLVM that it can't use.
     prepare(device if device == "cuda" else "cpu", threads)
     import drjit as dr
     import drjit.llvm
