@@ -22,7 +22,7 @@ from irradia.field.quantise import FinishOptions, finish, round_tables
 from irradia.field.quantised import pack_nibbles, quantise, unpack_nibbles
 from irradia.field.spec import FieldFrame, FieldSpec
 from irradia.field.training.batches import MemorySource
-from irradia.field.training.rows import Rows, pack
+from irradia.field.training.rows import HeldOut, Rows, pack
 from irradia.formats.samples import SampleFile, SampleInfo
 
 BOX = ((-1.0, 0.0, 0.0), (1.0, 2.0, 4.0))
@@ -211,6 +211,25 @@ def test_samples_of_another_kind_are_refused(grid_field: Field) -> None:
     probes = SampleFile(Path("p.samples"), info, np.ones((4, info.n_columns), np.float32))
     with pytest.raises(InputError, match="mode irradiance"):
         finish(grid_field, 8, probes)
+
+
+def test_what_training_did_not_see_finishing_does_not_see(grid_field: Field) -> None:
+    rows = WORLD.rows.copy()
+    kept_back = HeldOut(0.5, 0.0, FRAME.aabb, 7)
+    rows[kept_back.rows_of(np.arange(len(rows))), 6:9] = 1e6
+    options = FinishOptions(rounds=1, round_steps=2, steps=4, batch_size=256)
+
+    def made(samples: SampleFile, kept: HeldOut | None) -> bytes:
+        return encode_field(finish(grid_field, 8, samples, options, kept_back=kept, backend="numba"))
+
+    wrong = replace(WORLD, rows=rows)
+    assert made(wrong, kept_back) == made(WORLD, kept_back)
+    assert made(wrong, None) != made(WORLD, None)
+
+
+def test_nothing_to_learn_from_is_refused(grid_field: Field) -> None:
+    with pytest.raises(InputError, match="left to learn"):
+        finish(grid_field, 8, WORLD, kept_back=HeldOut(1.0, 0.0, FRAME.aabb, 7))
 
 
 def test_absurd_options_are_refused() -> None:

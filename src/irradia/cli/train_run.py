@@ -14,6 +14,7 @@ from irradia.cli.train_view import shown
 from irradia.core import provenance
 from irradia.core.errors import InputError, InternalError
 from irradia.core.progress import Progress
+from irradia.core.rng import Seed
 from irradia.field.backend import Backend
 from irradia.field.backends import backend as find_backend
 from irradia.field.field import Field
@@ -174,11 +175,20 @@ def _made(
         return trained
     from irradia.field.quantise import FinishOptions
     from irradia.field.quantise import finish as finish_in_bits
+    from irradia.field.training.rows import held_out
 
     options = job.options
     finishing = FinishOptions(batch_size=options.batch_size, loss=options.loss, seed=options.seed)
     bits = 8 if job.finish == "int8" else 4
-    return finish_in_bits(trained, bits, samples, finishing, backend=backend, progress=progress)
+    kept_back = held_out(
+        samples,
+        Seed(options.seed),
+        rows=_validation(job, samples) is None,
+        blocks=options.data.hold_out_blocks,
+    )
+    return finish_in_bits(
+        trained, bits, samples, finishing, kept_back=kept_back, backend=backend, progress=progress
+    )
 
 
 def _about(job: TrainJob, samples: SampleFile, finished: Finished, progress: Progress) -> dict[str, Any]:

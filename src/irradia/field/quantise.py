@@ -20,9 +20,10 @@ from irradia.field.backend import Backend, LossName, Parameters, Rates, StepOpti
 from irradia.field.backends import backend as find_backend
 from irradia.field.field import Field
 from irradia.field.quantised import Bits, QuantisedField, QuantisedTensor, quantise
+from irradia.field.spec import FieldFrame
 from irradia.field.tensors import encoding_tensors, from_tensors, to_halves, to_tensors
 from irradia.field.training.batches import MemorySource
-from irradia.field.training.rows import Rows, check_fit, pack, spread
+from irradia.field.training.rows import HeldOut, Rows, check_fit, pack, spread
 from irradia.field.training.start import inference_parameters, state_of
 from irradia.formats.samples import SampleFile
 
@@ -91,6 +92,7 @@ def finish(
     samples: SampleFile,
     options: FinishOptions | None = None,
     *,
+    kept_back: HeldOut | None = None,
     backend: Backend | str = "auto",
     progress: Progress | None = None,
 ) -> QuantisedField:
@@ -103,11 +105,12 @@ def finish(
         bits: Of a code, 4 or 8.
         samples: That it was trained from.
         options: How.
+        kept_back: What training didn't see, so that it still may judge.
         backend: Computes it, or its name.
         progress: Shows how far it is.
 
     Raises:
-        InputError: The samples aren't the field's.
+        InputError: The samples aren't the field's, or all of them are kept back.
     """
     options = options or FinishOptions()
     check_fit(samples, field.spec)
@@ -116,7 +119,8 @@ def finish(
     rounds = options.rounds if tables else 0
     total = rounds * options.round_steps + options.steps
     with (progress or silent_progress()).stage(f"Finish in {bits} bits", total, "steps") as stage:
-        school = _School(field, samples, options, computing, total)
+        rows = _rows(samples, kept_back, field.frame)
+        school = _School(field, rows, options, computing, total)
         exact = field.parameters
         for _ in range(rounds):
             rounded = round_tables(replace(field, parameters=exact), bits, options.block).field.parameters
@@ -140,15 +144,24 @@ def _whole(values: NDArray[np.float32]) -> int:
     return values[0].size if values.ndim > 2 else values.size
 
 
+def _rows(samples: SampleFile, kept_back: HeldOut | None, frame: FieldFrame) -> Rows:
+    """Up to MAX_ROWS samples, evenly picked, in the field's units."""
+    number = spread(len(samples), MAX_ROWS)
+    rows = np.array(samples.rows[number])
+    if kept_back is not None:
+        rows = rows[kept_back.learned(number, rows[:, :3])]
+    if not len(rows):
+        raise InputError("no sample is left to learn from", where=str(samples.path))
+    return Rows(pack(rows, samples.info.n_values, frame), samples.info.has_normals)
+
+
 class _School:
     """Batches and learning rates of one finishing, and Adam's moments from lesson to lesson."""
 
     def __init__(
-        self, field: Field, samples: SampleFile, options: FinishOptions, backend: Backend, total: int
+        self, field: Field, rows: Rows, options: FinishOptions, backend: Backend, total: int
     ) -> None:
-        rows = np.array(samples.rows[spread(len(samples), MAX_ROWS)])
-        packed = pack(rows, samples.info.n_values, field.frame)
-        self._source = MemorySource(Rows(packed, samples.info.has_normals))
+        self._source = MemorySource(rows)
         self._spec, self._options, self._backend, self._total = field.spec, options, backend, total
         self._seed = Seed(options.seed).child("finish")
         self._state = state_of(field.parameters, StepOptions(average=0.0))
