@@ -1,6 +1,6 @@
 """How fast do fields train and evaluate? Irradia against PyTorch with fused Adam, on the same cores.
 
-    python bench/field_training.py                          all four fields
+    python bench/field_training.py                          all, in about eight minutes
     python bench/field_training.py --model triplane --rounds 3
     python bench/field_training.py --device cuda            our Dr.Jit backend against PyTorch on the GPU
 
@@ -13,6 +13,9 @@ its own that is warm before it is timed. In this order, for each field:
    rounds with the slowest and fastest. Ratios are taken within a round.
 
 The machine's own limits are measured at the end: multiply-adds in registers, and a triad over memory.
+
+PyTorch's own gradient of a table sorts all indices, so hash grids are measured once more against a gradient
+written for them in PyTorch (``-own``).
 
 PyTorch runs in an environment of its own, made on the first run; set IRRADIA_BENCH_TORCH_PYTHON to use
 another. Results go to ``bench/results/field_training.md``.
@@ -70,11 +73,7 @@ def measure_model(model: Model, arguments: argparse.Namespace, versions: dict[st
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "task.npz"
         write_task(path, task)
-        backend = BACKENDS[arguments.device]
-        with (
-            torch_worker(path, arguments.threads) as peer,
-            irradia_worker(path, arguments.threads, backend) as ours,
-        ):
+        with torch_worker(path) as peer, irradia_worker(path, BACKENDS[arguments.device]) as ours:
             agreement = compare(ours, peer)
             print(f"{model.name}: {agreement}", file=sys.stderr, flush=True)
             if not agreement.good:
@@ -90,7 +89,7 @@ def measure_model(model: Model, arguments: argparse.Namespace, versions: dict[st
 def _facts(arguments: argparse.Namespace, versions: list[str]) -> list[str]:
     average = f"running mean {arguments.average:g}" if arguments.average else "no running mean"
     return [
-        f"Machine: {cpu_name()}, {arguments.threads} threads, {platform.system()},"
+        f"Machine: {cpu_name()}, threads: {arguments.threads}, {platform.system()},"
         f" Python {platform.python_version()}",
         f"Sides: {'; '.join(versions)}",
         f"Commit: {source_commit()}; date: {time.strftime('%Y-%m-%d')}",

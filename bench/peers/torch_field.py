@@ -128,7 +128,7 @@ class TorchSide(Side):
     def version(self) -> str:
         """PyTorch's, and what it runs on."""
         where = torch.cuda.get_device_name(self.device) if self.device.type == "cuda" else "CPU"
-        return f"PyTorch {torch.__version__} on {where}, {torch.get_num_threads()} threads"
+        return f"PyTorch {torch.__version__} on {where}"
 
     def _normal(self, batch: int) -> Tensor | None:
         return None if self.normal is None else self.normal[batch]

@@ -34,12 +34,10 @@ def peer_python() -> Path:
 class Worker(AbstractContextManager["Worker"]):
     """A side that answers requests; see ``peers/field_worker.py`` for what may be asked."""
 
-    def __init__(self, name: str, command: list[str], threads: int) -> None:
+    def __init__(self, name: str, command: list[str]) -> None:
         self.name = name
-        # NumPy's own BLAS threads would only stand in the way of a side's.
-        environment = os.environ | {"OMP_NUM_THREADS": str(threads), "NUMBA_NUM_THREADS": str(threads)}
         self._process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=BENCH, env=environment
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=BENCH
         )
 
     def ask(self, do: str, **details: Any) -> dict[str, Any]:
@@ -87,12 +85,12 @@ class Worker(AbstractContextManager["Worker"]):
         return self
 
 
-def torch_worker(task: Path, threads: int) -> Worker:
+def torch_worker(task: Path) -> Worker:
     """The peer."""
-    return Worker("PyTorch", [str(peer_python()), "-m", "peers.torch_field", str(task)], threads)
+    return Worker("PyTorch", [str(peer_python()), "-m", "peers.torch_field", str(task)])
 
 
-def irradia_worker(task: Path, threads: int, backend: str) -> Worker:
+def irradia_worker(task: Path, backend: str) -> Worker:
     """Ours."""
     command = [sys.executable, "-m", "support.irradia_field", str(task), "--backend", backend]
-    return Worker("Irradia", command, threads)
+    return Worker("Irradia", command)

@@ -66,6 +66,8 @@ def _limits_table(measured: Sequence[Measured], limits: Limits) -> list[str]:
         "|---|---|---|---|---|---|",
     ]
     for row in measured:
+        if row.model.own_backward:
+            continue  # the same field again, against another peer
         for name, cost, rounds in (
             ("step", step_cost(row.model.spec, row.batch), row.step),
             ("evaluation", inference_cost(row.model.spec, row.batch), row.infer),

@@ -58,8 +58,8 @@ class IrradiaSide(Side):
         return state.parameters | {f"first/{name}": value for name, value in state.first.items()}
 
     def version(self) -> str:
-        """Backend and threads."""
-        return f"Irradia's {self.backend.name}, {self.task.settings['threads']} threads"
+        """Which backend."""
+        return f"Irradia's {self.backend.name}"
 
 
 def main() -> None:
