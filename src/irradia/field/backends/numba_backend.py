@@ -225,7 +225,9 @@ class NumbaStepper(Stepper):
         options = self._options
         adam = adam_of_step(options.network_adam, self._step, rate, options.average)
         flat = (Learned(*(array.reshape(-1) for array in each)) for each in (self._matrices, self._biases))
-        self._team.run(update_network, self._totals, *flat, self._learns, self._gradients, adam)
+        self._team.run(
+            update_network, self._network, self._totals, *flat, self._learns, self._gradients, adam
+        )
 
     def _collect(self, kind: int) -> Parameters:
         """One kind of arrays, such as first moments, by the names of parameters."""

@@ -113,7 +113,9 @@ def train(thread, next_task, network, features, n_gradients, target, loss, scrat
         if part >= N_PARTS:
             break
         matrices, biases = totals.matrices[part], totals.biases[part]
-        matrices[:] = 0.0
+        for layer in range(len(network.matrices)):
+            n_rows, n_pairs = _blocks(network, layer)
+            matrices[layer, :n_rows, :n_pairs] = 0.0
         biases[:] = 0.0
         total = 0.0
         for tile in range(part * n_tiles // N_PARTS, (part + 1) * n_tiles // N_PARTS):
@@ -121,6 +123,13 @@ def train(thread, next_task, network, features, n_gradients, target, loss, scrat
                 thread, network, features[tile], n_gradients, target, tile, loss, scratch, matrices, biases
             )
         totals.loss[part] = total
+
+
+@inner
+def _blocks(network, layer):
+    """Rows and columns of blocks that a layer's matrix takes of the square."""
+    n_out, n_in = network.sizes[layer + 1], network.sizes[layer]
+    return (n_out + ROWS - 1) // ROWS, (n_in + 1) // 2
 
 
 @inner
@@ -159,16 +168,17 @@ def _train_tile(thread, network, features, n_gradients, target, tile, loss, scra
 
 
 @kernel
-def update_network(thread, next_task, totals, learned_matrices, learned_biases, learns, gradients, adam):
+def update_network(thread, next_task, network, totals, matrices, biases, learns, gradients, adam):
     """Adam on matrices and biases; task: a layer.
 
     Args:
         thread, next_task: See numba_team.py.
+        network: Network.
         totals: Totals.
-        learned_matrices: Learned, (layers · R · R,) each.
-        learned_biases: Learned, (layers · R,) each.
+        matrices: Learned, (layers · R · R,) each.
+        biases: Learned, (layers · R,) each.
         learns: (layers, 2) whether matrix and bias learn.
-        gradients: (layers, R + 1, R) scratch memory.
+        gradients: (layers, R + 1, R) zeros, and zeros again afterwards.
         adam: Adam.
     """
     n_layers, side = gradients.shape[0], gradients.shape[2]
@@ -178,18 +188,18 @@ def update_network(thread, next_task, totals, learned_matrices, learned_biases, 
             break
         gradient = gradients[layer]
         if learns[layer, 0]:
-            _sum_matrices(totals.matrices, layer, gradient)
-            adam_sweep(learned_matrices, layer * side * side, side * side, gradient.ravel(), adam)
+            _sum_matrices(totals.matrices, layer, _blocks(network, layer), gradient)
+            adam_sweep(matrices, layer * side * side, side * side, gradient.ravel(), adam)
         if learns[layer, 1]:
             _sum_biases(totals.biases, layer, gradient[side])
-            adam_sweep(learned_biases, layer * side, side, gradient[side], adam)
+            adam_sweep(biases, layer * side, side, gradient[side], adam)
 
 
 @inner
-def _sum_matrices(parts, layer, gradient):
+def _sum_matrices(parts, layer, n_blocks, gradient):
     """Sums the parts in order, and undoes the blocks."""
-    for i in range(parts.shape[2]):
-        for j in range(parts.shape[3]):
+    for i in range(n_blocks[0]):
+        for j in range(n_blocks[1]):
             total = splat8(0.0)
             for part in range(N_PARTS):
                 total = total + load8(parts, (part, layer, i, j, 0))
