@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.core.errors import InputError
-from irradia.core.progress import Progress, silent_progress
+from irradia.core.progress import Progress, Stage, silent_progress
 from irradia.core.rng import Seed
 from irradia.field.backend import Backend, LossName, Parameters, Rates, StepOptions
 from irradia.field.backends import backend as find_backend
@@ -63,7 +63,7 @@ class FinishOptions:
     def __post_init__(self) -> None:
         counts = (self.block, self.rounds, self.steps, self.round_steps - 1, self.batch_size - 1)
         if min(counts) < 0:
-            raise InputError(f"expected counts of steps that aren't negative, found {self}")
+            raise InputError(f"expected counts of at least 0, of steps and samples at least 1, found {self}")
 
 
 def round_tables(field: Field, bits: Bits, block: int = 0) -> QuantisedField:
@@ -119,8 +119,7 @@ def finish(
     rounds = options.rounds if tables else 0
     total = rounds * options.round_steps + options.steps
     with (progress or silent_progress()).stage(f"Finish in {bits} bits", total, "steps") as stage:
-        rows = _rows(samples, kept_back, field.frame)
-        school = _School(field, rows, options, computing, total)
+        school = _School(field, _rows(samples, kept_back, field.frame), options, computing, stage, total)
         exact = field.parameters
         for _ in range(rounds):
             rounded = round_tables(replace(field, parameters=exact), bits, options.block).field.parameters
@@ -129,13 +128,11 @@ def finish(
                 name: np.add(exact[name], values - rounded[name]) if name in tables else values
                 for name, values in learnt.items()
             }
-            stage.advance(options.round_steps)
         coded = round_tables(replace(field, parameters=exact), bits, options.block)
         if options.steps:
             start = {**coded.field.parameters, **_network(exact)}
             learnt = school.teach(start, options.steps, average=options.average, frozen=tables)
             coded = _with_network(coded, learnt)
-            stage.advance(options.steps)
     return coded
 
 
@@ -159,10 +156,10 @@ class _School:
     """Batches and learning rates of one finishing, and Adam's moments from lesson to lesson."""
 
     def __init__(
-        self, field: Field, rows: Rows, options: FinishOptions, backend: Backend, total: int
+        self, field: Field, rows: Rows, options: FinishOptions, backend: Backend, stage: Stage, total: int
     ) -> None:
-        self._source = MemorySource(rows)
-        self._spec, self._options, self._backend, self._total = field.spec, options, backend, total
+        self._source, self._spec, self._options = MemorySource(rows), field.spec, options
+        self._backend, self._stage, self._total = backend, stage, total
         self._seed = Seed(options.seed).child("finish")
         self._state = state_of(field.parameters, StepOptions(average=0.0))
 
@@ -178,6 +175,7 @@ class _School:
         for step in range(before, before + steps):
             batch = self._source.batch(step, self._options.batch_size, self._seed)
             stepper.step(batch, self._rates(step))
+            self._stage.advance()
         self._state = stepper.state()
         # The mean is as old as this lesson.
         return inference_parameters(replace(self._state, step=steps), how)
