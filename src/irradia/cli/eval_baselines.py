@@ -27,6 +27,7 @@ _VERSION = 1
 _RAYS_PER_PROBE = 1024
 _SIGHT_BYTES = 16 * 16 * 2 * 2  # the octahedral map of distances beside each probe, in halves
 _LIGHTMAP_SAMPLES = 256
+_SIGHTED_SPP = 4
 _SMALLEST_EDGE = 32
 _LEAST_BYTES = {
     "sh1": probe_bytes(1),
@@ -46,6 +47,7 @@ class Baseline:
         n_bytes: As shipped.
         irradiance: E (N, 3) at positions and normals; None where it knows only surfaces.
         lightmap: To render from; None where it knows space.
+        most_spp: Samples per pixel of its pictures at most: what answers slowly has rougher edges.
     """
 
     key: str
@@ -53,6 +55,7 @@ class Baseline:
     n_bytes: int
     irradiance: Callable[[F32, F32], F32] | None = None
     lightmap: BakedLight | None = None
+    most_spp: int = 1 << 20
 
 
 def make_baseline(key: str, scene: Scene, n_bytes: int, progress: Progress, seed: int) -> Baseline | None:
@@ -87,9 +90,8 @@ def sighted_grid(scene: Scene, n_bytes: int, progress: Progress, seed: int = 0) 
         )
         return found.astype(np.float32)
 
-    return Baseline(
-        "visibility", f"SH L2 grid with visibility, {_by(probes)}", each * len(probes), irradiance
-    )
+    name = f"SH L2 grid with visibility, {_by(probes)}"
+    return Baseline("visibility", name, each * len(probes), irradiance, most_spp=_SIGHTED_SPP)
 
 
 def small_lightmap(scene: Scene, n_bytes: int, progress: Progress, seed: int = 0) -> Baseline:

@@ -180,7 +180,7 @@ def _picture(job: EvalJob, scene: Scene, rival: Baseline, camera: Camera, progre
     from irradia.transport.gbuffer import picture_under
     from irradia.transport.render import render
 
-    options = _render_options(job, camera, job.pictures.spp, "picture")
+    options = _render_options(job, camera, min(job.pictures.spp, rival.most_spp), "picture")
     if rival.irradiance is None:
         return render(scene, camera, options, lightmap=rival.lightmap, progress=progress)
     return picture_under(scene, camera, options, rival.irradiance, progress, name=rival.name)

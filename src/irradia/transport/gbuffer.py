@@ -27,7 +27,7 @@ from irradia.scene.types import Camera, Scene
 from irradia.transport.backend import dr, mi
 from irradia.transport.camera_rays import camera_ray
 from irradia.transport.light_setup import make_lights
-from irradia.transport.materials import DOUBLE_SIDED, FILTERS, UNLIT
+from irradia.transport.materials import DOUBLE_SIDED, FILTERS
 from irradia.transport.path import direct
 from irradia.transport.render import RenderOptions
 from irradia.transport.sampling import Sampler, hash_u32
@@ -244,11 +244,10 @@ class _Viewer:
         stops = met & ~passes
         weight = ray.throughput * stop_weight
         ray.other += dr.select(stops, weight * world.emission(hit.triangle, hit.bary, back, stops), 0.0)
-        reflects = stops & ((record.flags & UNLIT) == 0)
-        ray.weight = dr.select(reflects, weight, ray.weight)
-        ray.triangle = dr.select(reflects, hit.triangle, ray.triangle)
-        ray.bary = dr.select(reflects, hit.bary, ray.bary)
-        ray.back = dr.select(reflects, back, ray.back)
+        ray.weight = dr.select(stops, weight, ray.weight)
+        ray.triangle = dr.select(stops, hit.triangle, ray.triangle)
+        ray.bary = dr.select(stops, hit.bary, ray.bary)
+        ray.back = dr.select(stops, back, ray.back)
 
         beyond = world.geometry.step_past(ray.origin, ray.direction, hit.t)
         ray.origin = dr.select(passes, beyond, ray.origin)
