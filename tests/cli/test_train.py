@@ -193,8 +193,12 @@ def test_a_spec_file_says_all_of_the_field(train, data, tmp_path):
     assert again["validation"] == said["validation"]
 
 
-def test_figures_are_those_of_the_file(train, data, tmp_path):
-    _, said = train(data, "-o", tmp_path / "f.safetensors")
+@pytest.mark.parametrize("name", ["f.safetensors", "f.safetensors.zst", "f.bin"])
+def test_figures_are_those_of_the_file(train, data, tmp_path, name):
+    grid = ("--n-levels", "2", "--log2-hashmap-size", "6", "--base-resolution", "2", "--max-resolution", "8")
+    quick = (*grid, "--hidden-dim", "8", "--steps", "40", "--batch-size", "64", "--backend", "numpy")
+    code, said = train(data, "-o", tmp_path / name, quick=quick)
+    assert code == 0
     shipped, trained = said["validation"], said["validation_before_rounding"]
     assert shipped["relmse"] != trained["relmse"]
     assert shipped["relmse"] == pytest.approx(trained["relmse"], rel=0.05)

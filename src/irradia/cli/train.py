@@ -168,7 +168,7 @@ _COUNT = options.Whole(1, 1 << 30)
 @click.option(
     "--lr-final",
     type=options.POSITIVE,
-    default=0.01,
+    default=0.1,
     show_default=True,
     metavar="X",
     help="Share of both that is left at the end.",

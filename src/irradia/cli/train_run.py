@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -67,11 +67,8 @@ def run_training(job: TrainJob, progress: Progress) -> dict[str, Any]:
         progress.say("Stopped early; the field is usable. The same command with --resume goes on.")
     else:
         job.checkpoint.unlink(missing_ok=True)
-    with progress.stage("Judge the file"):
-        parameters = load_field(job.out).parameters
-        shipped = finished.judges.validation.figures(backend.evaluator(spec, parameters))
     return {
-        **_summary(job, finished, shipped),
+        **_summary(job, finished, _shipped(job, finished, progress)),
         "backend": backend.name,
         "bytes": n_bytes,
         "stage_s": {name: round(seconds, 4) for name, seconds in progress.seconds.items()},
@@ -200,6 +197,15 @@ def _about(job: TrainJob, samples: SampleFile, finished: Finished, progress: Pro
     )
     result = {"steps": finished.step, "loss": finished.loss, "validation": finished.figures.to_json()}
     return {**made.reproducible(), "training": result, "samples": dict(samples.info.provenance)}
+
+
+def _shipped(job: TrainJob, finished: Finished, progress: Progress) -> Figures:
+    """Figures of the file. A .bin comes back with another spec and scale that give the same light."""
+    with progress.stage("Judge the file"):
+        field = load_field(job.out)
+        judge = replace(finished.judges.validation, scale=field.frame.scale)
+        backend = find_backend(job.backend, field.spec, job.threads)
+        return judge.figures(backend.evaluator(field.spec, field.parameters))
 
 
 def _summary(job: TrainJob, finished: Finished, shipped: Figures) -> dict[str, Any]:

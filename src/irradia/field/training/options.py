@@ -69,7 +69,7 @@ class TrainOptions:
     loss: LossName = "relative_l2"
     lr_encoding: float = 0.01
     lr_network: float = 0.001
-    lr_final: float = 0.01
+    lr_final: float = 0.1
     average: float = 0.99
     validate_every: int | None = None
     early_stop: int | None = None
