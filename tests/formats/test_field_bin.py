@@ -78,6 +78,11 @@ def test_inputs_and_outputs_follow_from_the_size(width: int, layers: int, n_outp
     assert found == (n_inputs, n_outputs)
 
 
+def test_normal_of_four_numbers_is_told_from_padding() -> None:
+    header = BinHeader(FREQUENCY, 5, 0, 1, (0, 0), 32, 2, BOX)
+    assert layer_sizes(n_halves(33 + 4, 32, 2, 3), header, "") == (37, 3)
+
+
 def patched(offset: int, kind: str, *values: float) -> bytes:
     data = bytearray(GOLDEN)
     struct.pack_into(f"<{kind}", data, offset, *values)

@@ -159,10 +159,11 @@ def layer_sizes(n_halves: int, header: BinHeader, where: str) -> tuple[int, int]
     )
 
 
-def input_sizes(n_features: int, n_outputs: int) -> tuple[int, int]:
-    """Inputs that a network may have: as many as there are, and padded to four."""
-    used = n_features + (3 if n_outputs <= 4 else 0)
-    return used, padded(used)
+def input_sizes(n_features: int, n_outputs: int) -> set[int]:
+    """Inputs that a network may have: features alone or with a normal of three or four, padded or not."""
+    normals = (3, 4) if n_outputs <= 4 else (0,)
+    used = {n_features + normal for normal in normals}
+    return used | {padded(n) for n in used}
 
 
 def padded(n: int) -> int:
