@@ -10,10 +10,12 @@ import numpy as np
 import pytest
 
 from irradia.cli import app
+from irradia.export.field_extension import read_baked_field
 from irradia.field.bin_conventions import BinConventions
 from irradia.field.bin_reader import decode_bin
 from irradia.field.files import load_field, read_field
 from irradia.formats.samples import SampleInfo, SampleWriter
+from irradia.scene.gltf import read_document
 
 ROOT = Path(__file__).resolve().parents[2]
 GRID = ROOT / "vectors" / "hash-fp32.safetensors"
@@ -104,3 +106,15 @@ def test_samples_of_other_light_are_not_believed(capfd, tmp_path: Path) -> None:
     assert app.run(["export", str(PLANES_BIN), "-o", str(out), "--calibrate", str(data)]) == 2
     assert "no conventions explain" in capfd.readouterr().err
     assert not out.exists()
+
+
+def test_field_goes_into_a_baked_scene(export, tmp_path: Path) -> None:
+    scene = tmp_path / "scene.gltf"
+    root = {"asset": {"version": "2.0"}, "extensions": {"IRRADIA_lighting": {"version": 1}}}
+    scene.write_text(json.dumps(root), encoding="utf-8")
+    code, said = export(GRID, "-o", tmp_path / "out.glb", "--scene", scene)
+    assert (code, said["bytes"]) == (0, (tmp_path / "out.glb").stat().st_size)
+    stored = read_baked_field(read_document(tmp_path / "out.glb"))
+    assert stored is not None
+    same = stored.field.irradiance(*places())
+    np.testing.assert_array_equal(same, load_field(GRID).irradiance(*places()))
