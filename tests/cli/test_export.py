@@ -112,7 +112,7 @@ def test_field_goes_into_a_baked_scene(export, tmp_path: Path) -> None:
     scene = tmp_path / "scene.gltf"
     root = {"asset": {"version": "2.0"}, "extensions": {"IRRADIA_lighting": {"version": 1}}}
     scene.write_text(json.dumps(root), encoding="utf-8")
-    code, said = export(GRID, "-o", tmp_path / "out.glb", "--scene", scene)
+    code, said = export(GRID, "-o", tmp_path / "out.glb", "--scene", scene, "--precision", "fp32")
     assert (code, said["bytes"]) == (0, (tmp_path / "out.glb").stat().st_size)
     stored = read_baked_field(read_document(tmp_path / "out.glb"))
     assert stored is not None
