@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 
+import numpy as np
 import pytest
 
 from irradia.bake.plan import (
@@ -14,6 +15,7 @@ from irradia.bake.plan import (
     rays_per_pass,
     slice_bounds,
 )
+from irradia.bake.rounds import UniformRounds
 
 
 def test_growing_epochs_double_up_to_an_eighth_of_the_samples():
@@ -25,11 +27,12 @@ def test_growing_epochs_stay_cheap_in_long_bakes():
     assert sum(plan.growing) < 4096 / 16
 
 
+@pytest.mark.parametrize("hurry", [False, True])
 @pytest.mark.parametrize("samples", [1, 2, 7, 8, 9, 20, 64, 100, 4096])
-def test_every_sub_sample_gets_as_many_next_event_samples(samples: int):
+def test_every_sub_sample_gets_as_many_next_event_samples(samples: int, hurry: bool):
     passes = [8] * (samples // 8) + [samples % 8] * (samples % 8 > 0)
     later = sum(direct_samples(n, CACHED_NEE_RATIO) for n in passes)
-    assert (plan_epochs(samples, cached=True).first_direct + later) % 8 == 0
+    assert (plan_epochs(samples, cached=True, hurry=hurry).first_direct + later) % 8 == 0
 
 
 def test_path_bake_is_one_epoch():
@@ -38,6 +41,25 @@ def test_path_bake_is_one_epoch():
 
 def test_hurried_bake_spends_less_before_its_last_epoch():
     assert sum(plan_epochs(256, cached=True, hurry=True).growing) < sum(plan_epochs(256, cached=True).growing)
+
+
+@pytest.mark.parametrize("samples", [256, 1024, 4096])
+def test_a_quarter_that_is_seen_first_is_done_within_a_third_of_the_samples(samples: int):
+    settling = 8  # rays, rather more than it takes
+    plan = plan_epochs(samples, cached=True, hurry=True)
+    seen, unseen = np.arange(100_000, dtype=np.uint32), np.arange(100_000, 400_000, dtype=np.uint32)
+    ends = [slice_bounds(samples, len(seen)), slice_bounds(samples, 400_000)]
+    rounds = UniformRounds([seen, unseen], ends, early_rays=sum(plan.growing))
+    traced = [0, 0]
+    while not rounds.finished(0):
+        turn = rounds.next()
+        assert turn is not None
+        rounds.done(turn)
+        traced[turn.queue] += len(turn.texels) * turn.n_rays
+    early = 400_000 * (plan.first_direct + settling + sum(plan.growing))
+    with_direct = 1.0 + CACHED_NEE_RATIO
+    assert early + with_direct * sum(traced) < 0.34 * (early + with_direct * 400_000 * samples)
+    assert 300_000 * sum(plan.growing) + traced[1] > 0.09 * (400_000 * sum(plan.growing) + sum(traced))
 
 
 @pytest.mark.parametrize("samples", [1, 7, 8, 64, 100, 1000, 4096])

@@ -21,13 +21,13 @@ def _run(rounds: Rounds, n: int = 10_000) -> list[Round]:
 
 def test_uniform_rounds_give_every_texel_all_samples():
     rays = np.zeros(400, int)
-    for turn in _run(UniformRounds([SEEN, UNSEEN], [8, 24, 64])):
+    for turn in _run(UniformRounds([SEEN, UNSEEN], [[32, 64], [8, 24, 64]])):
         rays[turn.texels] += turn.n_rays
     assert (rays == 64).all()
 
 
 def test_seen_texels_are_finished_before_a_fifth_of_the_others_rays_are_spent():
-    rounds = UniformRounds([SEEN, UNSEEN], range(8, 513, 8))
+    rounds = UniformRounds([SEEN, UNSEEN], [range(8, 513, 8)] * 2)
     spent = [0, 0]
     while not rounds.finished(0):
         turn = rounds.next()
@@ -38,17 +38,29 @@ def test_seen_texels_are_finished_before_a_fifth_of_the_others_rays_are_spent():
     assert _run(rounds)[-1].queue == 1
 
 
+@pytest.mark.parametrize("adaptive", [False, True])
+def test_unseen_texels_that_have_had_their_tenth_before_wait(adaptive: bool):
+    queues, noise = [SEEN, UNSEEN], _Noise(np.ones(400))
+    if adaptive:
+        rounds: Rounds = AdaptiveRounds(queues, noise.error, noise=None, samples=512, early_rays=20)
+    else:
+        rounds = UniformRounds(queues, [range(32, 513, 32)] * 2, early_rays=20)
+    order = [turn.queue for turn in _run(rounds)]
+    assert order[:16] == [0] * 16  # 20 · 300 rays of 20 · 400 + 512 · 100 are a tenth
+    assert set(order[16:]) == {1}
+
+
 def test_nothing_is_served_when_all_is_done():
     assert serve([5, 5], [True, True]) is None
 
 
 def test_shards_together_are_the_whole():
     ends = list(range(8, 65, 8))
-    whole = [(t.n_rays, t.queue) for t in _run(UniformRounds([SEEN], ends))]
+    whole = [(t.n_rays, t.queue) for t in _run(UniformRounds([SEEN], [ends]))]
     parts = [
         (t.n_rays, t.queue)
         for i in range(3)
-        for t in _run(UniformRounds([SEEN], ends, first=i * 8 // 3, last=(i + 1) * 8 // 3))
+        for t in _run(UniformRounds([SEEN], [ends], part=(i * 8 // 3, (i + 1) * 8 // 3)))
     ]
     assert parts == whole
 
@@ -108,7 +120,7 @@ def test_restored_rounds_go_on_as_if_never_stopped(adaptive: bool):
     def make(noise: _Noise) -> Rounds:
         if adaptive:
             return AdaptiveRounds([SEEN, UNSEEN], noise.error, noise=0.05, samples=1 << 20)
-        return UniformRounds([SEEN, UNSEEN], range(8, 129, 8))
+        return UniformRounds([SEEN, UNSEEN], [range(16, 129, 16), range(8, 129, 8)])
 
     whole, broken = _Noise(np.linspace(0.1, 3.0, 400)), _Noise(np.linspace(0.1, 3.0, 400))
     whole.run(make(whole))

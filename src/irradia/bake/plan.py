@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 _LONGEST_GROWING = 64  # rays; a cache this clean leaves no noise worth tracing longer for
-_LONGEST_IN_A_HURRY = 8
+_LONGEST_IN_A_HURRY, _FIRST_DIRECT_IN_A_HURRY = 8, 16
 _MAX_SLICES = 32
 _SAMPLES_PER_SLICE = 1 << 22
 CACHED_NEE_RATIO = 0.5  # next-event samples per ray: a cache spares most of the noise that they would
@@ -44,7 +44,8 @@ def plan_epochs(samples: int, *, cached: bool, hurry: bool = False) -> EpochPlan
     while size <= longest:
         growing.append(size)
         size *= 2
-    return EpochPlan(_first_direct(samples), tuple(growing), cached=True)
+    first_direct = _first_direct(samples, _FIRST_DIRECT_IN_A_HURRY if hurry else _LONGEST_GROWING)
+    return EpochPlan(first_direct, tuple(growing), cached=True)
 
 
 def direct_samples(n_rays: int, nee_ratio: float) -> int:
@@ -52,12 +53,12 @@ def direct_samples(n_rays: int, nee_ratio: float) -> int:
     return max(int(n_rays * nee_ratio), 1)
 
 
-def _first_direct(samples: int) -> int:
+def _first_direct(samples: int, most: int) -> int:
     """About an eighth of ``samples``, so that with those of the last epoch every sub-sample has as many."""
     blocks, rest = divmod(samples, _BLOCK)
     later = blocks * direct_samples(_BLOCK, CACHED_NEE_RATIO)
     later += direct_samples(rest, CACHED_NEE_RATIO) if rest else 0
-    first = min(max(samples // 8, _BLOCK), _LONGEST_GROWING) // _BLOCK * _BLOCK
+    first = min(max(samples // 8, _BLOCK), most) // _BLOCK * _BLOCK
     return first + -later % _BLOCK
 
 

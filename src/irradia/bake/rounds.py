@@ -6,8 +6,8 @@ all texels share, rays go where they lower the relative error most, or stay wher
 target. Decisions come from noise pooled over a texel's neighbours, and are taken on whole rounds, so
 that a single bright hit neither starves nor feeds a texel.
 
-With a camera, texels that it sees are a queue of their own, served first; the others get a tenth of
-the rays meanwhile, since what is seen needs their light.
+With a camera, texels that it sees are a queue of their own, served first. The others have a tenth of
+all rays meanwhile, those of earlier epochs counted: what is seen needs their light.
 """
 
 from __future__ import annotations
@@ -99,38 +99,46 @@ class UniformRounds:
 
     Args:
         queues: Lists of texels, in order of importance.
-        ends: Ray numbers at which rounds end.
-        first, last: Range of rounds to trace: a shard's part.
+        ends: For each queue, ray numbers at which its rounds end; the last is the same for all.
+        early_rays: That each texel has had in earlier epochs.
+        part: First and end of the rounds to trace, a shard's part of the one queue; None for all.
     """
 
     def __init__(
-        self, queues: Sequence[U32], ends: Sequence[int], *, first: int = 0, last: int | None = None
+        self,
+        queues: Sequence[U32],
+        ends: Sequence[Sequence[int]],
+        *,
+        early_rays: int = 0,
+        part: tuple[int, int] | None = None,
     ) -> None:
         self._queues = queues
         self._ends = ends
-        self._last = len(ends) if last is None else last
-        self._position = np.full(len(queues), first, np.int64)
+        self._early_rays = early_rays
+        self._first, last = part or (0, None)
+        self._last = [len(each) if last is None else last for each in ends]
+        self._position = np.full(len(queues), self._first, np.int64)
         self._spent = np.zeros(len(queues), np.int64)
-        self._first = first
 
     @property
     def rays_per_texel(self) -> float:
         """See :class:`Rounds`."""
-        return self._ends[self._last - 1] - self.first_ray
+        return self._ends[0][self._last[0] - 1] - self.first_ray
 
     @property
     def first_ray(self) -> int:
         """See :class:`Rounds`."""
-        return self._ends[self._first - 1] if self._first else 0
+        return self._ends[0][self._first - 1] if self._first else 0
 
     def next(self) -> Round | None:
         """See :class:`Rounds`."""
-        queue = serve(self._spent.tolist(), [self.finished(q) for q in range(len(self._queues))])
+        spent = [int(s) + self._early_rays * len(q) for s, q in zip(self._spent, self._queues, strict=True)]
+        queue = serve(spent, [self.finished(q) for q in range(len(self._queues))])
         if queue is None:
             return None
-        position = int(self._position[queue])
-        before = self._ends[position - 1] if position else 0
-        return Round(self._queues[queue], self._ends[position] - before, queue)
+        ends, position = self._ends[queue], int(self._position[queue])
+        before = ends[position - 1] if position else 0
+        return Round(self._queues[queue], ends[position] - before, queue)
 
     def done(self, finished: Round) -> None:
         """See :class:`Rounds`."""
@@ -139,7 +147,7 @@ class UniformRounds:
 
     def finished(self, queue: int) -> bool:
         """See :class:`Rounds`."""
-        return self._position[queue] >= self._last or len(self._queues[queue]) == 0
+        return self._position[queue] >= self._last[queue] or len(self._queues[queue]) == 0
 
     def keep_only(self, texels: U32) -> None:
         """See :class:`Rounds`."""
@@ -164,6 +172,7 @@ class AdaptiveRounds:
         noise: Target: a queue is finished when 95 % of its texels are below. None spreads rays so
             that the mean square relative error falls fastest.
         samples: Mean rays a texel at which a queue is finished, whatever its noise.
+        early_rays: That each texel has had in earlier epochs.
     """
 
     def __init__(
@@ -173,11 +182,13 @@ class AdaptiveRounds:
         *,
         noise: float | None,
         samples: int,
+        early_rays: int = 0,
     ) -> None:
         self._queues = queues
         self._relative_error = relative_error
         self._noise = noise
         self._samples = samples
+        self._early_rays = early_rays
         self._active = list(queues)
         n_texels = int(max((q.max() + 1 for q in queues if len(q)), default=0))
         self._rays = np.zeros(n_texels, np.int64)
@@ -194,7 +205,7 @@ class AdaptiveRounds:
 
     def next(self) -> Round | None:
         """See :class:`Rounds`."""
-        spent = [int(self._rays[q].sum()) for q in self._queues]
+        spent = [int(self._rays[q].sum()) + self._early_rays * len(q) for q in self._queues]
         queue = serve(spent, [self.finished(q) for q in range(len(self._queues))])
         return None if queue is None else Round(self._active[queue], ROUND, queue)
 

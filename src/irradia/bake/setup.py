@@ -25,6 +25,7 @@ from irradia.scene.types import F32, U32, Light, Scene
 
 if TYPE_CHECKING:
     from irradia.transport.texel_light import TexelLight
+    from irradia.transport.texel_sums import Lanes
 
 
 def set_up(
@@ -56,19 +57,27 @@ def set_up(
     valid = footprints.valid
     chosen = valid & _chosen_texels(texels, mesh, selection)
     traced = _indices(valid if options.cached else chosen)
-    with progress.stage("kernels"):
-        per_texel = lanes_per_texel(len(traced), rays_per_pass(len(traced)), light.wanted_lanes)
-        nothing = light.cache_of_nothing(options.cached, one_bounce=options.one_bounce)
-        light.warm_up(light.lanes(traced, per_texel), nothing)
-    meter = NoiseMeter(texels.pixel, texels.chart, (texels.n_pages, texels.height_px, texels.width_px))
     queues = _queues(light, chosen, selection, progress)
+    with progress.stage("kernels"):
+        nothing = light.cache_of_nothing(options.cached, one_bounce=options.one_bounce)
+        light.warm_up(_lanes(light, traced), nothing)
+        for queue in queues:
+            if len(queue):
+                light.warm_up(_lanes(light, queue), nothing, last_epoch=True)
+        del nothing
+    meter = NoiseMeter(texels.pixel, texels.chart, (texels.n_pages, texels.height_px, texels.width_px))
     samples = options.planned_samples
+    plan = plan_epochs(
+        samples, cached=options.cached and not options.one_bounce, hurry=selection.view is not None
+    )
+
+    def relative_error() -> F32:
+        return meter.relative_error(bake.progression.total)
+
     bake = ProgressiveBake(
         light,
-        plan_epochs(
-            samples, cached=options.cached and not options.one_bounce, hurry=selection.view is not None
-        ),
-        _rounds(queues, options, selection, lambda: meter.relative_error(bake.progression.total)),
+        plan,
+        _rounds(queues, options, selection.shard, sum(plan.growing), relative_error),
         meter,
         traced,
         Seed(options.seed).child("bake"),
@@ -76,6 +85,8 @@ def set_up(
         time_s=options.time_s,
         one_bounce=options.one_bounce,
     )
+    if options.directional is None:
+        texels = texels.without_samples()  # they are on the device now
     return LightmapBake(
         options, mesh, layout, texels, light, footprints, bake, meter, scene.lights, masks, region
     )
@@ -160,27 +171,45 @@ def _queues(
     return [_indices(chosen & seen), _indices(chosen & ~seen)]
 
 
+def _lanes(light: TexelLight, texels: U32) -> Lanes:
+    n = len(texels)
+    return light.lanes(texels, lanes_per_texel(n, rays_per_pass(n), light.wanted_lanes))
+
+
 def _indices(mask: NDArray[np.bool_]) -> U32:
     return np.flatnonzero(mask).astype(np.uint32)
 
 
 def _rounds(
-    queues: list[U32], options: BakeOptions, selection: Selection, relative_error: Callable[[], F32]
+    queues: list[U32],
+    options: BakeOptions,
+    shard: tuple[int, int] | None,
+    early_rays: int,
+    relative_error: Callable[[], F32],
 ) -> Rounds:
     if options.watches_noise:
         samples = options.samples or MAX_SAMPLES
-        return AdaptiveRounds(queues, relative_error, noise=options.noise, samples=samples)
+        return AdaptiveRounds(
+            queues, relative_error, noise=options.noise, samples=samples, early_rays=early_rays
+        )
     if options.samples is None:
-        return UniformRounds(queues, range(ROUND, MAX_SAMPLES + 1, ROUND))
-    ends = slice_bounds(options.samples, sum(len(queue) for queue in queues))
-    if selection.shard is None:
-        return UniformRounds(queues, ends)
-    number, count = selection.shard
-    if count > len(ends):
+        open_end = range(ROUND, MAX_SAMPLES + 1, ROUND)
+        return UniformRounds(queues, [open_end] * len(queues), early_rays=early_rays)
+    # What the camera sees comes in few and large launches; the rest in small portions as they are owed.
+    ends = [slice_bounds(options.samples, len(queues[0]))]
+    ends += [slice_bounds(options.samples, sum(len(queue) for queue in queues)) for _ in queues[1:]]
+    return UniformRounds(queues, ends, early_rays=early_rays, part=_part(shard, len(ends[0])))
+
+
+def _part(shard: tuple[int, int] | None, n_slices: int) -> tuple[int, int] | None:
+    """First and end of a shard's slices."""
+    if shard is None:
+        return None
+    number, count = shard
+    if count > n_slices:
         raise InputError(
-            f"this bake can be divided into {len(ends)} at most, found {count}",
+            f"this bake can be divided into {n_slices} at most, found {count}",
             where="--shard",
             fix="More samples or texels can be divided among more machines.",
         )
-    first, last = ((number + i) * len(ends) // count for i in (-1, 0))
-    return UniformRounds(queues, ends, first=first, last=last)
+    return (number - 1) * n_slices // count, number * n_slices // count

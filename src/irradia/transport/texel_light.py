@@ -133,9 +133,14 @@ class TexelLight:
         """How many lanes keep the device busy."""
         return _LANES[device.kind]
 
-    def warm_up(self, lanes: Lanes, cache: LightCache | None) -> None:
-        """Compiles the kernels by running them with no rays."""
-        self.add_rays(self.empty_sums(), lanes, Draw(0, 0, 0, 0), cache)
+    def warm_up(self, lanes: Lanes, cache: LightCache | None, *, last_epoch: bool = False) -> None:
+        """Compiles the kernels by running them with no rays; those of the last epoch count from others."""
+        after = None
+        if last_epoch:
+            earlier = self.empty_sums()
+            dr.make_opaque(earlier.rays, earlier.samples)
+            after = earlier.counting_from(0, 0)
+        self.add_rays(self.empty_sums(), lanes, Draw(0, 0, 0, 0), cache, after=after)
         self.wait()
 
     def cache_of_nothing(self, cached: bool, *, one_bounce: bool) -> LightCache | None:
