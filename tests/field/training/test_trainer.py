@@ -113,11 +113,8 @@ def test_stopping_is_no_validation(run, samples, tmp_path):
 def test_a_time_budget_brings_the_rates_to_their_end(samples, spec):
     seen: list[Rates] = []
     backend = Watched(lambda rates, loss: (seen.append(rates), loss)[1])
-    events = list(
-        train(
-            samples, spec, TrainOptions(steps=None, time_s=0.2, batch_size=64), TrainContext(backend=backend)
-        )
-    )
+    options = TrainOptions(steps=None, time_s=0.2, batch_size=64, lr_final=0.01)
+    events = list(train(samples, spec, options, TrainContext(backend=backend)))
     assert events[-1].why == "time"
     assert seen[-1].network < 0.05 * seen[1].network
     assert sum(isinstance(event, Validated) for event in events) >= 5
