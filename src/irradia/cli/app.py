@@ -30,7 +30,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "render": ("render", "Path-trace an image of a scene or of a baked result."),
     "sweep": ("sweep", "Train a grid of fields and compare them."),
     "eval": ("eval", "A field against the path-traced reference."),
-    "export": ("export", "A field in another format, smaller, or inside a baked scene."),
+    "export": ("export", "Write a field in another format, smaller, or into a baked scene."),
     "compare": ("compare", "Metrics between two images or lightmaps."),
 }
 

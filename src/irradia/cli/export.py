@@ -55,7 +55,7 @@ _N_CALIBRATION = 512
 @options.seed_option
 @options.json_option
 def command(weights: Path, out: Path, as_json: bool, **flags: Any) -> None:
-    """Write a field in another format.
+    """Write a field in another format, smaller, or into a baked scene.
 
     WEIGHTS is a .safetensors, a .safetensors.zst or a .bin. A .bin doesn't say how it is to be read:
     name its conventions, or let them be found from samples of the same light.
