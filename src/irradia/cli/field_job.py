@@ -45,8 +45,8 @@ class FieldOptions:
 
     preset: str = "hash-200kB"
     quantity: Quantity = "indirect"
-    n_samples: int = 400_000
-    rays: int = 64
+    n_samples: int = 300_000
+    rays: int = 32
     train_s: float = 20.0
     seed: int = 0
 
