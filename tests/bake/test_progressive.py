@@ -220,3 +220,15 @@ def test_progress_is_silent_when_none_is_given(cornell, capsys: pytest.CaptureFi
     _run(_start(cornell, samples=1))
     assert capsys.readouterr().err == ""
     assert silent_progress().stream is None
+
+
+def test_state_is_saved_without_a_copy_of_everything(cornell, tmp_path: Path):
+    import tracemalloc
+
+    bake = _start(cornell, samples=8)
+    _run(bake, 2)
+    tracemalloc.start()
+    save_state(tmp_path / "bake.state", bake.bake, IDENTITY)
+    _, highest = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert highest < 0.5 * (tmp_path / "bake.state").stat().st_size

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import zipfile
+from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -44,16 +45,25 @@ def save_state(path: Path, bake: ProgressiveBake, identity: dict[str, Any]) -> N
         "spent_s": now.spent_s,
         "n_rays": now.n_rays,
     }
-    arrays: dict[str, NDArray] = {"header": np.frombuffer(json.dumps(header).encode(), np.uint8)}
+    with write_atomic(path) as stream, zipfile.ZipFile(stream, "w") as archive:
+        for key, value in _each_array(bake, header):  # as np.savez does, which would need all at once
+            with archive.open(f"{key}.npy", "w", force_zip64=True) as entry:
+                np.lib.format.write_array(entry, value, allow_pickle=False)
+
+
+def _each_array(bake: ProgressiveBake, header: dict[str, Any]) -> Iterator[tuple[str, NDArray]]:
+    """What is saved, one array after the other: together they are as large as the bake's own."""
+    now = bake.progression
+    yield "header", np.frombuffer(json.dumps(header).encode(), np.uint8)
     for name in _SUMS:
-        for key, value in getattr(now, name).to_arrays().items():
-            arrays[f"{name}/{key}"] = value
+        for key, value in getattr(now, name).each_array():
+            yield f"{name}/{key}", value
     if now.settled is not None:
-        arrays["settled"] = np.array(now.settled)
-    arrays |= {f"meter/{key}": value for key, value in bake.meter.to_arrays().items()}
-    arrays |= {f"rounds/{key}": value for key, value in bake.rounds.state().items()}
-    with write_atomic(path) as stream:
-        np.savez(stream, **arrays)  # type: ignore[arg-type]
+        yield "settled", np.array(now.settled)
+    for key, value in bake.meter.to_arrays().items():
+        yield f"meter/{key}", value
+    for key, value in bake.rounds.state().items():
+        yield f"rounds/{key}", value
 
 
 def load_state(path: Path, bake: ProgressiveBake, identity: dict[str, Any]) -> None:

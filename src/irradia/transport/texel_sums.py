@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -150,12 +151,14 @@ class TexelSums:
 
     def to_arrays(self) -> dict[str, NDArray]:
         """Everything as host arrays: (C, 3, N) sums and (N,) counts."""
-        return {
-            "gathered": np.array([np.array(colour) for colour in self.gathered]),
-            "arrived": np.array([np.array(colour) for colour in self.arrived]),
-            "rays": np.array(self.rays),
-            "samples": np.array(self.samples),
-        }
+        return dict(self.each_array())
+
+    def each_array(self) -> Iterator[tuple[str, NDArray]]:
+        """The same one after the other, for those who need not hold them all."""
+        yield "gathered", _to_host(self.gathered)
+        yield "arrived", _to_host(self.arrived)
+        yield "rays", np.array(self.rays)
+        yield "samples", np.array(self.samples)
 
     @staticmethod
     def from_arrays(arrays: dict[str, NDArray]) -> TexelSums:
@@ -163,6 +166,15 @@ class TexelSums:
         gathered = [mi.Color3f(*[mi.Float(row) for row in colour]) for colour in arrays["gathered"]]
         arrived = [mi.Color3f(*[mi.Float(row) for row in colour]) for colour in arrays["arrived"]]
         return TexelSums(gathered, arrived, mi.UInt32(arrays["rays"]), mi.UInt32(arrays["samples"]))
+
+
+def _to_host(colours: list[mi.Color3f]) -> NDArray[np.float32]:
+    """(C, 3, N), column by column, so that no second copy of them all is made."""
+    result = np.empty((len(colours), 3, len(colours[0].x)), np.float32)
+    for channel, colour in enumerate(colours):
+        for row in range(3):
+            result[channel, row] = np.array(colour[row])
+    return result
 
 
 def _sum_lanes(colours: list[mi.Color3f], lanes: Lanes) -> list[mi.Color3f]:
