@@ -36,4 +36,47 @@ export {
 } from "./field/tensor.js";
 export { readFieldBin } from "./formats/field-bin.js";
 export { type ReadFieldOptions, readField } from "./formats/field-safetensors.js";
+export { type LightTexture, readKtx2, type TexelEncoding, texelRgb } from "./formats/ktx2.js";
 export type { UnpackOptions, Unzstd } from "./formats/zstd.js";
+export {
+  type ConstantsPlan,
+  type EntryLayout,
+  type FieldTextures,
+  type LayerPlacement,
+  planFieldTextures,
+  type TableBits,
+  type TablePlacement,
+  type TableTexture,
+} from "./gpu/field-textures.js";
+export { planLightTexture } from "./gpu/light-textures.js";
+export { entryPlace, type PackedField, packField, texelStride, wordsPerTexel } from "./gpu/pack.js";
+export {
+  type TextureFormat,
+  type TextureLimits,
+  type TexturePlan,
+  WEBGL2_LIMITS,
+  WEBGPU_LIMITS,
+} from "./gpu/texture.js";
+export { type BakedLight, type ReadBakedOptions, readBakedGlb, readFieldOf, readMap } from "./scene/baked.js";
+export { type BufferViews, type GltfFile, gltfFile, readGlb } from "./scene/glb.js";
+export {
+  DIRECTIONAL_MAPS,
+  type DirectionalEntry,
+  type DirectionalMode,
+  EXTENSION,
+  type FieldEntry,
+  type Lighting,
+  type LightmapEntry,
+  type MapEntry,
+  readLighting,
+  viewsOfLighting,
+} from "./scene/lighting.js";
+export { type NodeLight, type PrimitiveLight, type Rectangle, readNodeLight } from "./scene/nodes.js";
+export {
+  NO_PROBE,
+  type ProbeGrid,
+  type ProbeOctree,
+  type Probes,
+  probeCoefficients,
+  readProbes,
+} from "./scene/probes.js";

@@ -1,0 +1,211 @@
+/**
+ * Which tensor of a field goes where on the GPU.
+ *
+ * **Tables** (of hash grids and planes) become textures of unsigned words, one for each encoding that learns:
+ * the same bits that the file holds, so that half floats, bytes and nibbles cost on the GPU what they cost on
+ * disk, and one shader decodes them all. They are read with `textureLoad` and filtered by hand. Formats that
+ * texture units decode (rg16float, rg8snorm) would need a shader variant each, and no format has nibbles.
+ *
+ * An *entry* is the features of one corner or texel. Its features are padded with unused ones to a power of
+ * two, so that entries never straddle words; feature f of an entry begins at bit f · bits, the first at the
+ * lowest.
+ *
+ * **Constants** are one list of vec4s: the perceptron in floats, then the scales of codes. It fits a uniform
+ * buffer in most cases, else a texture.
+ */
+import type { Encoding } from "../field/encoding.js";
+import { Composite } from "../field/encodings/composite.js";
+import { TriPlane } from "../field/encodings/tri-plane.js";
+import type { Field } from "../field/field.js";
+import { layerShapes } from "../field/spec.js";
+import { bitsPerValue, type Tensor } from "../field/tensor.js";
+import {
+  planList,
+  planTexture,
+  type TextureFormat,
+  type TextureLimits,
+  type TexturePlan,
+} from "./texture.js";
+
+/** Bits of a value in a table: nibbles plus 8, signed bytes, half floats, floats. */
+export type TableBits = 4 | 8 | 16 | 32;
+
+/** How entries lie in words and texels. */
+export interface EntryLayout {
+  readonly bits: TableBits;
+  /** Features of an entry that mean something. */
+  readonly nFeatures: number;
+  /** Bits of an entry, a power of two from 4 up. */
+  readonly entryBits: number;
+  /** Entries of a texel, a power of two; 1 in planes. */
+  readonly entriesPerTexel: number;
+  /** Texels of an entry, a power of two; 1 unless an entry has over 128 bits. */
+  readonly texelsPerEntry: number;
+}
+
+/** One tensor in its texture. */
+export interface TablePlacement {
+  /** As files name it. */
+  readonly tensor: string;
+  /** In a list: its first texel. In planes 0. */
+  readonly firstTexel: number;
+  /** Place of its scales among `constants`' numbers, from 0 on behind the perceptron; -1 without codes. */
+  readonly firstScale: number;
+  /** Values that share a scale: value v of the unpadded tensor has scale `firstScale + ⌊v / block⌋`. */
+  readonly block: number;
+}
+
+/** The texture of one encoding's tables. */
+export interface TableTexture {
+  /** Such as `position`, or `position.1` for the second part of a composite. */
+  readonly owner: string;
+  /**
+   * `list`: entry e begins at texel `firstTexel + ⌊e / entriesPerTexel⌋ · texelsPerEntry`; see `planList`.
+   * `planes`: entry (plane, row, column) is at x = column, y = row, layer = plane · texelsPerEntry, and its
+   * further texels are in the next layers.
+   */
+  readonly layout: "list" | "planes";
+  readonly texture: TexturePlan;
+  readonly entry: EntryLayout;
+  readonly tensors: readonly TablePlacement[];
+}
+
+/** One matrix of the perceptron, in blocks of 4 × 4; missing rows and columns are zeros. */
+export interface LayerPlacement {
+  readonly nInputs: number;
+  readonly nOutputs: number;
+  /** Column c of block (i outputs, j inputs), both by fours: vec4 `firstWeight + 4 (i · ⌈nInputs / 4⌉ + j) + c`. */
+  readonly firstWeight: number;
+  /** Biases of outputs 4 i to 4 i + 3: vec4 `firstBias + i`. */
+  readonly firstBias: number;
+}
+
+/** The list of vec4s. */
+export interface ConstantsPlan {
+  readonly nVec4: number;
+  readonly layers: readonly LayerPlacement[];
+  /** vec4 that holds the first four scales; scale s is component s mod 4 of vec4 `firstScale + ⌊s / 4⌋`. */
+  readonly firstScale: number;
+  readonly nScales: number;
+  /** Absent where the list fits a uniform buffer. An rgba32float list otherwise. */
+  readonly texture?: TexturePlan;
+}
+
+/** All that a shader needs to find a field's weights. */
+export interface FieldTextures {
+  readonly tables: readonly TableTexture[];
+  readonly constants: ConstantsPlan;
+}
+
+/**
+ * Plans a field's textures; nothing is allocated.
+ *
+ * @throws InputError where the field is too large for the device
+ */
+export function planFieldTextures(field: Field, limits: TextureLimits): FieldTextures {
+  let nScales = 0;
+  const tables = learnedEncodings(field).map(({ owner, encoding }) => {
+    const table = planTable(field, owner, encoding, nScales, limits);
+    for (const placed of table.tensors) nScales += scaleCount(field, placed);
+    return table;
+  });
+  return { tables, constants: planConstants(field, nScales, limits) };
+}
+
+/** A tensor that the field is known to have. */
+export function tensorOf(field: Field, name: string): Tensor {
+  const tensor = field.tensors.get(name);
+  if (!tensor) throw new Error(`a field without ${name}: it wasn't read by this package`);
+  return tensor;
+}
+
+/** Encodings with tables; composites in their parts. */
+function learnedEncodings({ spec }: Field): { owner: string; encoding: Encoding }[] {
+  const leaves = (owner: string, encoding: Encoding): { owner: string; encoding: Encoding }[] => {
+    if (encoding instanceof Composite)
+      return encoding.parts.flatMap((part, i) => leaves(`${owner}.${i}`, part));
+    return encoding.slots.length ? [{ owner, encoding }] : [];
+  };
+  return [
+    ...leaves("position", spec.position),
+    ...(spec.direction ? leaves("direction", spec.direction) : []),
+  ];
+}
+
+function planTable(
+  field: Field,
+  owner: string,
+  encoding: Encoding,
+  nScalesBefore: number,
+  limits: TextureLimits,
+): TableTexture {
+  const names = encoding.slots.map((slot) => `${owner}.${slot.name}`);
+  const isPlanes = encoding instanceof TriPlane;
+  const nFeatures = encoding.slots[0]?.shape.at(-1) ?? 1;
+  const bits = commonBits(names.map((name) => tensorOf(field, name)));
+  const { entry, format } = planEntry(bits, nFeatures, isPlanes);
+  let [firstTexel, firstScale] = [0, nScalesBefore];
+  const tensors = names.map((tensor) => {
+    const { shape, stored } = tensorOf(field, tensor);
+    const isCoded = bits < 16 && stored.kind === "codes";
+    const placed = {
+      tensor,
+      firstTexel,
+      firstScale: isCoded ? firstScale : -1,
+      block: isCoded ? stored.block : 0,
+    };
+    firstScale += scaleCount(field, placed);
+    if (!isPlanes) firstTexel += Math.ceil((shape[0] ?? 0) / entry.entriesPerTexel) * entry.texelsPerEntry;
+    return placed;
+  });
+  const texture = isPlanes
+    ? planTexture(format, [encoding.resolution, encoding.resolution, 3 * entry.texelsPerEntry], limits, owner)
+    : planList(format, firstTexel, limits, owner);
+  return { owner, layout: isPlanes ? "planes" : "list", texture, entry, tensors };
+}
+
+/** What all tensors are stored in, or floats where they differ. */
+function commonBits(tensors: readonly Tensor[]): TableBits {
+  const kinds = new Set(tensors.map(bitsPerValue));
+  const [only = 32] = kinds;
+  return kinds.size === 1 ? only : 32;
+}
+
+function planEntry(
+  bits: TableBits,
+  nFeatures: number,
+  isPlanes: boolean,
+): { entry: EntryLayout; format: TextureFormat } {
+  const entryBits = bits * 2 ** Math.ceil(Math.log2(nFeatures));
+  const texelBits = Math.min(Math.max(entryBits, 32), 128);
+  const entriesPerTexel = isPlanes ? 1 : Math.max(32 / entryBits, 1);
+  const texelsPerEntry = Math.max(entryBits / 128, 1);
+  const format = ({ 32: "r32uint", 64: "rg32uint", 128: "rgba32uint" } as const)[texelBits];
+  if (!format) throw new Error(`no texel of ${texelBits} bits`);
+  return { entry: { bits, nFeatures, entryBits, entriesPerTexel, texelsPerEntry }, format };
+}
+
+/** Scales that go among the constants. */
+function scaleCount(field: Field, { tensor, firstScale }: TablePlacement): number {
+  const { stored } = tensorOf(field, tensor);
+  return firstScale >= 0 && stored.kind === "codes" ? stored.scales.length : 0;
+}
+
+function planConstants(field: Field, nScales: number, limits: TextureLimits): ConstantsPlan {
+  let next = 0;
+  const layers = layerShapes(field.spec).map(({ nInputs, nOutputs }) => {
+    const [blocksIn, blocksOut] = [Math.ceil(nInputs / 4), Math.ceil(nOutputs / 4)];
+    const placed = { nInputs, nOutputs, firstWeight: next, firstBias: next + 4 * blocksIn * blocksOut };
+    next = placed.firstBias + blocksOut;
+    return placed;
+  });
+  const nVec4 = next + Math.ceil(nScales / 4);
+  const fits = 16 * nVec4 <= limits.maxUniformBytes;
+  return {
+    nVec4,
+    layers,
+    firstScale: next,
+    nScales,
+    ...(!fits && { texture: planList("rgba32float", nVec4, limits, "perceptron") }),
+  };
+}

@@ -1,0 +1,137 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import {
+  entryPlace,
+  type Field,
+  HashGrid,
+  packField,
+  planFieldTextures,
+  type TableTexture,
+  type TextureLimits,
+  tensorValues,
+  texelStride,
+  WEBGL2_LIMITS,
+  WEBGPU_LIMITS,
+  wordsPerTexel,
+} from "@irradia/runtime";
+import { refuses } from "./hostile.js";
+import { decoder, readAny, vector, vectors } from "./vectors.js";
+
+const unzstd = await decoder();
+const TINY: TextureLimits = { maxSize: 9, maxLayers: 256, maxUniformBytes: 64 };
+
+function fieldOf(name: string): Field {
+  const { file, bytes } = vector(name);
+  return readAny(file, bytes, { unzstd });
+}
+
+/** A half float as `unpackHalf2x16` sees it. */
+function half(bits: number): number {
+  const [sign, exponent, mantissa] = [bits >> 15 ? -1 : 1, (bits >> 10) & 31, bits & 1023];
+  return sign * (exponent ? (1 + mantissa / 1024) * 2 ** (exponent - 15) : mantissa * 2 ** -24);
+}
+
+/** What a shader does: feature f of an entry, from the texture's words and the constants. */
+function fetched(table: TableTexture, words: Uint32Array, constants: Float32Array, firstScale: number) {
+  const { bits, nFeatures } = table.entry;
+  return (placed: TableTexture["tensors"][number], entry: number, f: number): number => {
+    const { word, bit } = entryPlace(table, placed.firstTexel, entry);
+    const at = bit + f * bits;
+    const nWords = wordsPerTexel(table.texture);
+    const place = word + Math.floor(at / 32 / nWords) * texelStride(table) + (Math.floor(at / 32) % nWords);
+    const raw = words[place] ?? Number.NaN;
+    if (bits === 32) return new Float32Array(Uint32Array.of(raw).buffer)[0] ?? Number.NaN;
+    const value = (raw >>> (at % 32)) & (2 ** bits - 1);
+    if (bits === 16) return half(value);
+    const code = bits === 8 ? (value << 24) >> 24 : value - 8;
+    const block = Math.floor((entry * nFeatures + f) / placed.block);
+    return Math.fround(code * (constants[4 * firstScale + placed.firstScale + block] ?? Number.NaN));
+  };
+}
+
+for (const { name } of vectors()) {
+  for (const [device, limits] of Object.entries({
+    WebGL2: WEBGL2_LIMITS,
+    WebGPU: WEBGPU_LIMITS,
+    tiny: TINY,
+  })) {
+    test(`${name} comes back out of its textures on ${device}`, () => {
+      const field = fieldOf(name);
+      const plan = planFieldTextures(field, limits);
+      const packed = packField(field, plan);
+      const seen = new Set<string>();
+      plan.tables.forEach((table, i) => {
+        const words = packed.tables[i] ?? new Uint32Array();
+        assert.equal(words.byteLength, table.texture.nBytes);
+        assert.ok(Math.max(table.texture.width, table.texture.height) <= limits.maxSize);
+        const fetch = fetched(table, words, packed.constants, plan.constants.firstScale);
+        for (const placed of table.tensors) {
+          seen.add(placed.tensor);
+          const tensor = field.tensors.get(placed.tensor);
+          assert.ok(tensor);
+          const { nFeatures } = table.entry;
+          tensorValues(tensor).forEach((value, v) => {
+            assert.equal(
+              fetch(placed, Math.floor(v / nFeatures), v % nFeatures),
+              value,
+              `${placed.tensor} ${v}`,
+            );
+          });
+        }
+      });
+      const tables = [...field.tensors.keys()].filter((tensor) => !tensor.startsWith("mlp."));
+      assert.deepEqual([...seen].sort(), tables.sort());
+    });
+  }
+
+  test(`${name} has its perceptron in blocks of four by four`, () => {
+    const field = fieldOf(name);
+    const plan = planFieldTextures(field, WEBGL2_LIMITS);
+    const { constants } = packField(field, plan);
+    plan.constants.layers.forEach((layer, i) => {
+      const weight = tensorValues(field.tensors.get(`mlp.${i}.weight`) ?? assert.fail());
+      const bias = tensorValues(field.tensors.get(`mlp.${i}.bias`) ?? assert.fail());
+      const inputs = Array.from({ length: layer.nInputs }, (_, j) => Math.sin(j + 1));
+      const blocksIn = Math.ceil(layer.nInputs / 4);
+      for (let row = 0; row < layer.nOutputs; row++) {
+        const [block, component] = [Math.floor(row / 4), row % 4];
+        let sum = constants[4 * (layer.firstBias + block) + component] ?? Number.NaN;
+        let expected = bias[row] ?? Number.NaN;
+        for (let j = 0; j < 4 * blocksIn; j++) {
+          const vec4 = layer.firstWeight + 4 * (block * blocksIn + Math.floor(j / 4)) + (j % 4);
+          sum += (constants[4 * vec4 + component] ?? Number.NaN) * (inputs[j] ?? 0);
+          expected += j < layer.nInputs ? (weight[row * layer.nInputs + j] ?? 0) * (inputs[j] ?? 0) : 0;
+        }
+        assert.equal(sum, expected);
+      }
+    });
+  });
+}
+
+test("tables cost on the GPU what they cost on disk, up to a row", () => {
+  const bytes = ["hash-fp32", "hash-fp16", "hash-int8", "hash-int4"].map((name) => {
+    return planFieldTextures(fieldOf(name), WEBGPU_LIMITS).tables[0]?.texture.nBytes;
+  });
+  const grid = fieldOf("hash-fp32").spec.position;
+  assert.ok(grid instanceof HashGrid);
+  const entries = grid.levels.reduce((sum, level) => sum + level.nEntries, 0);
+  [8, 4, 2, 1].forEach((perEntry, i) => {
+    const [found, least] = [bytes[i] ?? 0, entries * perEntry];
+    assert.ok(found >= least && found < 1.3 * least, `${found} bytes for ${least}`);
+  });
+});
+
+test("constants leave the uniform buffer when they don't fit", () => {
+  const field = fieldOf("hash-int4");
+  assert.equal(planFieldTextures(field, WEBGL2_LIMITS).constants.texture, undefined);
+  assert.equal(planFieldTextures(field, TINY).constants.texture?.format, "rgba32float");
+});
+
+test("a field too large for a device is refused with the device's limit", () => {
+  const small = { ...TINY, maxSize: 5 };
+  refuses(
+    () => planFieldTextures(fieldOf("triplane-fp16"), small),
+    /position: expected at most 5 × 5 × 256 texels/,
+  );
+  refuses(() => planFieldTextures(fieldOf("hash-fp16"), { ...TINY, maxSize: 2, maxLayers: 3 }), /× 3 texels/);
+});
