@@ -148,7 +148,7 @@ def at_the_edges(batch):
 
 
 def test_composed_encodings_learn_each_their_own_part(check):
-    position = Composite((TriPlane(6, 3), GRID, Identity(), HashGrid(2, 5, 2, 2, 9)))
+    position = Composite((TriPlane(3, 3), GRID, Identity(), HashGrid(2, 5, 4, 2, 9)))  # 81 values, then pairs
     check(FieldSpec(position, Composite((Identity(), SphericalHarmonics(2))), width=16))
 
 
