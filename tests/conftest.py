@@ -11,6 +11,8 @@ from typing import Any
 
 import pytest
 
+from irradia.core.files import write_atomic
+
 ROOT = Path(__file__).resolve().parents[1]
 
 
@@ -67,10 +69,7 @@ def web_check():
 
     Fails where node or the packages of web/ are missing; ``make setup-dev`` installs both.
     """
-    node = shutil.which("node")
-    compiler = ROOT / "web" / "node_modules" / "typescript" / "bin" / "tsc"
-    if node is None or not compiler.is_file():
-        pytest.fail("node or web/node_modules is missing: run `make setup-dev`")
+    node, compiler = _node_and_compiler()
     subprocess.run([node, compiler, "--project", ROOT / "web"], check=True)
 
     def run(name: str, *arguments: Path | str) -> Any:
@@ -81,6 +80,44 @@ def web_check():
         return json.loads(done.stdout)
 
     return run
+
+
+@pytest.fixture(scope="session")
+def runtime_node(tmp_path_factory):
+    """Builds @irradia/runtime with its tests, and runs node on those: ``runtime_node("print-baked.js", …)``
+    gives what the finished process printed, and its return code.
+    """
+    node, compiler = _node_and_compiler()
+    package = ROOT / "web" / "packages" / "runtime"
+    for project, out in ((package, package / "dist"), (package / "test", package / "build")):
+        built = tmp_path_factory.mktemp(out.name)
+        subprocess.run([node, compiler, "--project", project, "--outDir", built], check=True)
+        _put_in_place(built, out)
+
+    def run(*arguments: Path | str) -> subprocess.CompletedProcess[str]:
+        command = [node, *map(str, arguments)]
+        return subprocess.run(
+            command, cwd=package / "build", capture_output=True, text=True, timeout=300, check=False
+        )
+
+    return run
+
+
+def _node_and_compiler() -> tuple[str, Path]:
+    node = shutil.which("node")
+    compiler = ROOT / "web" / "node_modules" / "typescript" / "bin" / "tsc"
+    if node is None or not compiler.is_file():
+        pytest.fail("node or web/node_modules is missing: run `make setup-dev`")
+    return node, compiler
+
+
+def _put_in_place(built: Path, out: Path) -> None:
+    """Replaces files whole and only where they changed: several processes of a run may do so at once."""
+    for source in built.rglob("*.*"):
+        target = out / source.relative_to(built)
+        if not target.exists() or target.read_bytes() != source.read_bytes():
+            with write_atomic(target) as stream:
+                stream.write(source.read_bytes())
 
 
 @pytest.fixture(scope="session")

@@ -1,0 +1,119 @@
+"""What the exporter writes, @irradia/runtime reads to the same numbers as Python."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from irradia.bake.directional import DirectionalMaps
+from irradia.bake.directional_modes import MODES
+from irradia.core.rng import Seed
+from irradia.core.sh import fibonacci_sphere
+from irradia.export.field_extension import put_field
+from irradia.export.glb import baked_glb
+from irradia.export.probes_extension import read_baked_probes
+from irradia.export.read_baked import read_baked
+from irradia.field.encodings import HashGrid, SphericalHarmonics
+from irradia.field.field import Field
+from irradia.field.init import new_parameters
+from irradia.field.native_fields import decode_field, encode_field
+from irradia.field.spec import FieldFrame, FieldSpec
+from irradia.scene.gltf import read_document
+
+from .probe_sets import OCTREE
+from .probe_sets import made as made_probes
+
+NODE_OF_INSTANCES = 7  # of the gallery, by EXT_mesh_gpu_instancing
+
+
+@pytest.fixture
+def read_in_node(runtime_node):
+    """What the runtime reads in a .glb, as JSON."""
+
+    def read(*arguments: Path) -> dict:
+        done = runtime_node("print-baked.js", *arguments)
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)
+
+    return read
+
+
+@pytest.mark.parametrize("encoding", ["rgb9e5", "half"])
+@pytest.mark.parametrize("mode", MODES)
+def test_lightmap_and_directional_maps(read_in_node, gallery, bake, tmp_path, mode, encoding):
+    plain = bake(gallery)
+    rng = np.random.default_rng(4)
+    maps = {name: rng.random(plain.pages.shape).astype(np.float32) for name in MODES[mode].maps}
+    directional = DirectionalMaps(mode, maps)
+    path = tmp_path / "scene.baked.glb"
+    path.write_bytes(
+        baked_glb(plain.scene, plain.layout, plain.pages, encoding=encoding, directional=directional)
+    )
+    found, expected = read_in_node(path), read_baked(str(path))
+    assert expected.directional is not None
+    np.testing.assert_array_equal(np.float32(found["lightmap"]), expected.pages.ravel())
+    assert list(found["directional"]) == list(MODES[mode].maps)
+    for name, pages in expected.directional.pages.items():
+        np.testing.assert_array_equal(np.float32(found["directional"][name]), pages.ravel())
+
+
+def test_rectangles_of_every_instance(read_in_node, gallery, bake):
+    baked = bake(gallery)
+    nodes, expected = read_in_node(baked.path)["nodes"], read_baked(str(baked.path))
+    checked = 0
+    for index, instance in enumerate(expected.scene.instances):
+        primitive = expected.scene.primitives[instance.primitive].primitive_index
+        entry = nodes[str(instance.node_index)]["primitives"][primitive]
+        if expected.layout.page[index] < 0:
+            assert entry is None
+            continue
+        rectangle = entry["rectangles"][instance.gpu_instance or 0]
+        assert rectangle["page"] == expected.layout.page[index]
+        np.testing.assert_array_equal(np.float32(rectangle["scale"]), expected.layout.scale[index])
+        np.testing.assert_array_equal(np.float32(rectangle["offset"]), expected.layout.offset[index])
+        checked += 1
+    assert checked > 5
+    assert len(nodes[str(NODE_OF_INSTANCES)]["primitives"][0]["rectangles"]) == 3
+
+
+@pytest.mark.parametrize("structure", ["grid", "octree", None])
+def test_probes(read_in_node, gallery, bake, tmp_path, structure):
+    probes = made_probes()
+    if structure != "grid":
+        probes = made_probes(structure=OCTREE if structure else None)
+    plain = bake(gallery)
+    path = tmp_path / "probes.glb"
+    path.write_bytes(baked_glb(plain.scene, plain.layout, plain.pages, probes=probes))
+    found, expected = read_in_node(path)["probes"], read_baked_probes(read_document(path))
+    assert expected is not None
+    assert found.get("structure") == structure
+    np.testing.assert_array_equal(
+        np.float32(found["coefficients"]), expected.coefficients.reshape(len(probes), 27)
+    )
+    np.testing.assert_array_equal(np.float32(found["positions"]), expected.positions.ravel())
+    assert found["states"] == expected.state.tolist()
+    shares = expected.distance / expected.reach[:, None, None, None]
+    np.testing.assert_allclose(np.array(found["distances"]) / 255.0, shares.ravel(), atol=1e-6)
+
+
+@pytest.mark.parametrize("compress", [False, True])
+def test_field(read_in_node, gallery, bake, tmp_path, compress):
+    box = np.array([(-1, 0, 0.1), (1, 2.3, 4)], np.float32)
+    spec = FieldSpec(HashGrid(4, 10, max_resolution=100), SphericalHarmonics(3), width=24)
+    parameters = new_parameters(spec, Seed(5))
+    parameters["position"] = np.random.default_rng(6).uniform(-1, 1, len(parameters["position"]))
+    parameters["position"] = parameters["position"].astype(np.float32)
+    data = encode_field(Field(spec, FieldFrame(box, 4.0), parameters), compress=compress)
+    path = bake(gallery).path
+    put_field(path, data)
+    positions = np.random.default_rng(7).uniform(box[0] - 0.1, box[1] + 0.1, (64, 3)).astype(np.float32)
+    normals = fibonacci_sphere(64).astype(np.float32)
+    questions = tmp_path / "questions.json"
+    questions.write_text(json.dumps({"positions": positions.tolist(), "normals": normals.tolist()}))
+    expected = decode_field(data).field.irradiance(positions, normals)
+    found = np.array(read_in_node(path, questions)["irradiance"])
+    assert np.abs(found - expected).max() <= 1e-5 * np.abs(expected).max()
+    assert expected.std() > 0.1 * expected.mean()
