@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from irradia.transport.backend import mi
+from irradia.transport.backend import dr, mi
 from irradia.transport.texel_noise import NoiseMeter
 from irradia.transport.texel_sums import TexelSums
 
@@ -37,6 +37,12 @@ def test_sums_that_begin_with_next_event_samples_leave_these_as_they_are():
     total.absorb(_sums(2, 50))
     np.testing.assert_array_equal(direct.to_arrays()["arrived"], before)
     assert not np.array_equal(total.to_arrays()["arrived"], before)
+
+
+def test_zeros_are_read_without_taking_memory():
+    sums = TexelSums.empty(50, N_CHANNELS)
+    assert not sums.to_arrays()["gathered"].any()
+    assert all(row.state == dr.VarState.Literal for colour in sums.gathered for row in colour)
 
 
 @pytest.fixture

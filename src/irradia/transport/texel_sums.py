@@ -173,8 +173,13 @@ def _to_host(colours: list[mi.Color3f]) -> NDArray[np.float32]:
     result = np.empty((len(colours), 3, len(colours[0].x)), np.float32)
     for channel, colour in enumerate(colours):
         for row in range(3):
-            result[channel, row] = np.array(colour[row])
+            result[channel, row] = _read(colour[row])
     return result
+
+
+def _read(column: mi.Float) -> NDArray[np.float32] | float:
+    """A column, or the one number that a constant stands for: read as a whole it would take memory."""
+    return column[0] if column.state == dr.VarState.Literal else np.array(column)
 
 
 def _sum_lanes(colours: list[mi.Color3f], lanes: Lanes) -> list[mi.Color3f]:
