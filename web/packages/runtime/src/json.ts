@@ -66,6 +66,12 @@ export class JsonView {
     return this.#values.get(key);
   }
 
+  /** All values as they are. */
+  plain(): Readonly<Record<string, unknown>> {
+    return Object.fromEntries(this.#values);
+  }
+
+  /** The pointer of a key. */
   at(key: string): string {
     return `${this.pointer}/${key}`;
   }

@@ -56,6 +56,10 @@ test("tensors that overlap, leave gaps or lie outside are refused", () => {
   refuses(() => readField(withHeader(grid, shifted(-(1 << 20)))), /found -/);
 });
 
+test("bytes that belong to no tensor are refused", () => {
+  refuses(() => readField(Uint8Array.of(...grid, 0, 0)), /expected \d+ bytes of tensors, found/);
+});
+
 test("counts too large for any file are refused before memory is asked for", () => {
   const shape = [2 ** 40, 2 ** 40];
   refuses(

@@ -19,7 +19,7 @@ test("the README's example prints light", async () => {
   await import(file.href);
   mock.restoreAll();
 
-  const [light] = printed.mock.calls[0]?.arguments as unknown as [number[]];
+  const light: number[] = printed.mock.calls[0]?.arguments.at(0) ?? [];
   assert.equal(light.length, 3);
   assert.ok(light.every((channel) => channel > 0 && Number.isFinite(channel)));
 });

@@ -1,13 +1,21 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import {
+  type Encoding,
   entryPlace,
   type Field,
+  type FieldFrame,
+  type FieldSpec,
   HashGrid,
+  type HashGridOptions,
+  Identity,
   packField,
   planFieldTextures,
   type TableTexture,
+  type Tensor,
   type TextureLimits,
+  TriPlane,
+  tensorShapes,
   tensorValues,
   texelStride,
   WEBGL2_LIMITS,
@@ -15,6 +23,7 @@ import {
   wordsPerTexel,
 } from "@irradia/runtime";
 import { refuses } from "./hostile.js";
+import { Random } from "./random.js";
 import { decoder, readAny, vector, vectors } from "./vectors.js";
 
 const unzstd = await decoder();
@@ -49,6 +58,89 @@ function fetched(table: TableTexture, words: Uint32Array, constants: Float32Arra
   };
 }
 
+/** Every value of every table as a shader finds it, against the tensors themselves. */
+function expectTables(field: Field, limits: TextureLimits): void {
+  const plan = planFieldTextures(field, limits);
+  const packed = packField(field, plan);
+  const seen: string[] = [];
+  plan.tables.forEach((table, i) => {
+    const words = packed.tables[i] ?? new Uint32Array();
+    assert.equal(words.byteLength, table.texture.nBytes);
+    assert.ok(Math.max(table.texture.width, table.texture.height) <= limits.maxSize);
+    const fetch = fetched(table, words, packed.constants, plan.constants.firstScale);
+    const { nFeatures } = table.entry;
+    for (const placed of table.tensors) {
+      seen.push(placed.tensor);
+      tensorValues(field.tensors.get(placed.tensor) ?? assert.fail()).forEach((value, v) => {
+        const found = fetch(placed, Math.floor(v / nFeatures), v % nFeatures);
+        assert.equal(found, value, `${placed.tensor} ${v}`);
+      });
+    }
+  });
+  const tables = [...field.tensors.keys()].filter((tensor) => !tensor.startsWith("mlp."));
+  assert.deepEqual(seen.sort(), tables.sort());
+}
+
+/** A field of numbers without meaning; `stored` says how the tensor at a place is. */
+function madeUp(position: Encoding, stored: (index: number) => "half" | "float" | 4 | 8): Field {
+  const random = new Random(3);
+  const spec: FieldSpec = {
+    position,
+    direction: new Identity(),
+    width: 5,
+    nHiddenLayers: 1,
+    activation: "relu",
+    head: "exp",
+    mode: "irradiance",
+  };
+  const tensors = [...tensorShapes(spec)].map(([name, shape], i): [string, Tensor] => {
+    const size = shape.reduce((product, n) => product * n, 1);
+    const kind = name.startsWith("mlp.") ? "float" : stored(i);
+    if (kind === "float")
+      return [name, { shape, stored: { kind, values: new Float32Array(size).map(() => random.next()) } }];
+    const halves = (n: number): Uint16Array => new Uint16Array(n).map(() => 0x3000 + random.below(0x1000));
+    if (kind === "half") return [name, { shape, stored: { kind, bits: halves(size) } }];
+    const codes = new Uint8Array(Math.ceil((size * kind) / 8)).map(() => random.below(256));
+    const scales = halves(Math.ceil(size / 7));
+    return [name, { shape, stored: { kind: "codes", bits: kind, block: 7, codes, scales } }];
+  });
+  const frame: FieldFrame = { min: [0, 0, 0], max: [1, 1, 1], scale: 1, quantity: "full" };
+  return { spec, frame, tensors: new Map(tensors), provenance: {} };
+}
+
+const GRID: HashGridOptions = {
+  nLevels: 3,
+  log2TableSize: 6,
+  nFeatures: 2,
+  baseResolution: 3,
+  maxResolution: 9,
+  fullLevels: false,
+  hashAll: false,
+  convention: "tiny-cuda-nn",
+  primes: [1, 2654435761, 805459861],
+};
+
+for (const kind of ["half", "float", 4, 8] as const) {
+  for (const nFeatures of [1, 3, 8, 16]) {
+    test(`tables of ${nFeatures} features in ${kind} come back out of their textures`, () => {
+      expectTables(
+        madeUp(new HashGrid({ ...GRID, nFeatures }), () => kind),
+        WEBGL2_LIMITS,
+      );
+      expectTables(
+        madeUp(new TriPlane({ resolution: 3, nFeatures, alignCorners: false }), () => kind),
+        WEBGL2_LIMITS,
+      );
+    });
+  }
+}
+
+test("tables stored in several ways become floats", () => {
+  const field = madeUp(new HashGrid(GRID), (i) => (["half", 8, 4] as const)[i % 3] ?? "half");
+  assert.equal(planFieldTextures(field, WEBGPU_LIMITS).tables[0]?.entry.bits, 32);
+  expectTables(field, WEBGPU_LIMITS);
+});
+
 for (const { name } of vectors()) {
   for (const [device, limits] of Object.entries({
     WebGL2: WEBGL2_LIMITS,
@@ -56,31 +148,7 @@ for (const { name } of vectors()) {
     tiny: TINY,
   })) {
     test(`${name} comes back out of its textures on ${device}`, () => {
-      const field = fieldOf(name);
-      const plan = planFieldTextures(field, limits);
-      const packed = packField(field, plan);
-      const seen = new Set<string>();
-      plan.tables.forEach((table, i) => {
-        const words = packed.tables[i] ?? new Uint32Array();
-        assert.equal(words.byteLength, table.texture.nBytes);
-        assert.ok(Math.max(table.texture.width, table.texture.height) <= limits.maxSize);
-        const fetch = fetched(table, words, packed.constants, plan.constants.firstScale);
-        for (const placed of table.tensors) {
-          seen.add(placed.tensor);
-          const tensor = field.tensors.get(placed.tensor);
-          assert.ok(tensor);
-          const { nFeatures } = table.entry;
-          tensorValues(tensor).forEach((value, v) => {
-            assert.equal(
-              fetch(placed, Math.floor(v / nFeatures), v % nFeatures),
-              value,
-              `${placed.tensor} ${v}`,
-            );
-          });
-        }
-      });
-      const tables = [...field.tensors.keys()].filter((tensor) => !tensor.startsWith("mlp."));
-      assert.deepEqual([...seen].sort(), tables.sort());
+      expectTables(fieldOf(name), limits);
     });
   }
 

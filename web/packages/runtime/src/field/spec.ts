@@ -108,21 +108,17 @@ export function readSpec(json: JsonView): FieldSpec {
 /** Reads a frame: its box, scale and quantity. */
 export function readFrame(json: JsonView): FieldFrame {
   json.allow(["aabb", "scale", "quantity"]);
-  const [min, max] = json.list("aabb").map((corner) => asVec3(corner, json.at("aabb")));
+  const corners = json.list("aabb").map((corner) => asVec3(corner, json.at("aabb")));
+  const [min, max] = corners;
   expect(
-    min !== undefined && max !== undefined && json.list("aabb").length === 2,
+    corners.length === 2 && min !== undefined && max !== undefined,
     "expected two corners",
     json.at("aabb"),
   );
-  const frame: FieldFrame = {
-    min,
-    max,
-    scale: json.number("scale"),
-    quantity: json.choice("quantity", QUANTITIES),
-  };
-  expectBox(frame.min, frame.max, json.at("aabb"));
-  expect(isPowerOfTwo(frame.scale), `expected a power of two, found ${frame.scale}`, json.at("scale"));
-  return frame;
+  expectBox(min, max, json.at("aabb"));
+  const scale = json.number("scale");
+  expect(isPowerOfTwo(scale), `expected a power of two, found ${scale}`, json.at("scale"));
+  return { min, max, scale, quantity: json.choice("quantity", QUANTITIES) };
 }
 
 /** Refuses boxes that are inside out, and corners that no float holds. */

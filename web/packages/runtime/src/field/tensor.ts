@@ -38,11 +38,11 @@ export function bitsPerValue(tensor: Tensor): 4 | 8 | 16 | 32 {
   return stored.kind === "half" ? 16 : 32;
 }
 
-/** Bytes of the weights as stored, scales included. */
-export function storedBytes(tensor: Tensor): number {
-  const { stored } = tensor;
-  if (stored.kind === "codes") return stored.codes.byteLength + stored.scales.byteLength;
-  return stored.kind === "half" ? stored.bits.byteLength : stored.values.byteLength;
+/** The weights' bytes as stored: half floats, floats, or codes without their scales. */
+export function storedBytes({ stored }: Tensor): Uint8Array {
+  if (stored.kind === "codes") return stored.codes;
+  const numbers = stored.kind === "half" ? stored.bits : stored.values;
+  return new Uint8Array(numbers.buffer, numbers.byteOffset, numbers.byteLength);
 }
 
 /** All values as floats. */
@@ -51,9 +51,11 @@ export function tensorValues(tensor: Tensor): Float32Array {
   if (stored.kind === "half") return halvesToFloats(stored.bits);
   if (stored.kind === "float") return stored.values;
   const scales = halvesToFloats(stored.scales);
-  return Float32Array.from({ length: product(tensor.shape) }, (_, i) => {
-    return codeAt(stored, i) * (scales[Math.floor(i / stored.block)] ?? 0);
-  });
+  const values = new Float32Array(product(tensor.shape));
+  for (let i = 0; i < values.length; i++) {
+    values[i] = codeAt(stored, i) * (scales[Math.floor(i / stored.block)] ?? 0);
+  }
+  return values;
 }
 
 /** The signed code of a value. */

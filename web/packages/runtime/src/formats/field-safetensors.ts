@@ -2,7 +2,7 @@
 import { asFloat32, asUint16 } from "../bytes.js";
 import { expect } from "../errors.js";
 import { expectTensors, type Field } from "../field/field.js";
-import { readFrame, readSpec, tensorShapes } from "../field/spec.js";
+import { type FieldSpec, readFrame, readSpec, tensorShapes } from "../field/spec.js";
 import type { Codes, Tensor } from "../field/tensor.js";
 import { type JsonView, parseJson } from "../json.js";
 import { expectFinite, expectFiniteHalves } from "../numbers.js";
@@ -34,22 +34,20 @@ export function readField(bytes: Uint8Array, options: ReadFieldOptions = {}): Fi
   const about = parseJson(new TextEncoder().encode(text), `${where}: ${KEY}`);
   about.allow(["version", "spec", "frame", "quantised", "provenance"]);
   about.integer("version", VERSION, VERSION);
+  const spec = readSpec(about.object("spec"));
   const field: Field = {
-    spec: readSpec(about.object("spec")),
+    spec,
     frame: readFrame(about.object("frame")),
-    tensors: new Map(),
-    provenance: Object.freeze(
-      about.object("provenance") && (about.get("provenance") as object),
-    ) as Field["provenance"],
+    tensors: readTensors(spec, tensors, about.object("quantised"), where),
+    provenance: about.object("provenance").plain(),
   };
-  const found = { ...field, tensors: readTensors(field, tensors, about.object("quantised"), where) };
-  expectTensors(found, where);
-  return found;
+  expectTensors(field, where);
+  return field;
 }
 
 /** Every tensor of the spec, and nothing else. */
 function readTensors(
-  { spec }: Field,
+  spec: FieldSpec,
   stored: ReadonlyMap<string, RawTensor>,
   quantised: JsonView,
   where: string,

@@ -1,6 +1,7 @@
 /** Fills the textures that `planFieldTextures` planned. */
 import type { Field } from "../field/field.js";
-import { codeAt, scaleAt, type Tensor, tensorValues } from "../field/tensor.js";
+import { bitsPerValue, codeAt, scaleAt, storedBytes, type Tensor, tensorValues } from "../field/tensor.js";
+import { product } from "../numbers.js";
 import { type FieldTextures, type TableTexture, tensorOf } from "./field-textures.js";
 import type { TexturePlan } from "./texture.js";
 
@@ -51,23 +52,36 @@ export function texelStride({ texture, layout }: TableTexture): number {
 
 function packTable(field: Field, table: TableTexture): Uint32Array {
   const words = new Uint32Array(table.texture.nBytes / 4);
-  const { bits, nFeatures } = table.entry;
-  const [nWords, stride] = [wordsPerTexel(table.texture), texelStride(table)];
   for (const { tensor: name, firstTexel } of table.tensors) {
     const tensor = tensorOf(field, name);
-    const bitsOf = bitsReader(tensor, bits);
-    const nEntries = tensor.shape.slice(0, -1).reduce((size, n) => size * n, 1);
-    for (let entry = 0; entry < nEntries; entry++) {
-      const { word, bit } = entryPlace(table, firstTexel, entry);
-      for (let f = 0; f < nFeatures; f++) {
-        const at = bit + f * bits;
-        const [texel, inTexel] = [Math.floor(at / (32 * nWords)), Math.floor(at / 32) % nWords];
-        const place = word + texel * stride + inTexel;
-        words[place] = (words[place] ?? 0) | (bitsOf(entry * nFeatures + f) << (at % 32));
-      }
-    }
+    if (isVerbatim(tensor, table)) {
+      const first = 4 * firstTexel * wordsPerTexel(table.texture);
+      new Uint8Array(words.buffer).set(storedBytes(tensor), first);
+    } else packEntries(words, table, tensor, firstTexel);
   }
   return words;
+}
+
+/** Whether the texture holds the very bytes of the file: nothing is padded, converted, or in other layers. */
+function isVerbatim(tensor: Tensor, { entry, layout }: TableTexture): boolean {
+  const isFull = entry.nFeatures * entry.bits === entry.entryBits && bitsPerValue(tensor) === entry.bits;
+  return isFull && (layout === "list" || (entry.entryBits >= 32 && entry.texelsPerEntry === 1));
+}
+
+function packEntries(words: Uint32Array, table: TableTexture, tensor: Tensor, firstTexel: number): void {
+  const { bits, nFeatures } = table.entry;
+  const [nWords, stride] = [wordsPerTexel(table.texture), texelStride(table)];
+  const bitsOf = bitsReader(tensor, bits);
+  const nEntries = product(tensor.shape.slice(0, -1));
+  for (let entry = 0; entry < nEntries; entry++) {
+    const { word, bit } = entryPlace(table, firstTexel, entry);
+    for (let f = 0; f < nFeatures; f++) {
+      const at = bit + f * bits;
+      const [texel, inTexel] = [Math.floor(at / (32 * nWords)), Math.floor(at / 32) % nWords];
+      const place = word + texel * stride + inTexel;
+      words[place] = (words[place] ?? 0) | (bitsOf(entry * nFeatures + f) << (at % 32));
+    }
+  }
 }
 
 /** The bits of a tensor's values, as so many. */
