@@ -56,7 +56,7 @@ test("primitives come back with their rectangles, instances with theirs", () => 
   assert.deepEqual(nodes.get(1)?.primitives, [
     { texCoord: 1, rectangles: [{ page: 1, scale: [0.5, 0.5], offset: [0, 0] }, undefined] },
   ]);
-  assert.deepEqual(nodes.get(2), { primitives: [], bakedLight: 0, shadowMaskChannel: 3 });
+  assert.deepEqual(nodes.get(2), { primitives: [], bakedLight: 0, bakedIesLight: 4, shadowMaskChannel: 3 });
   assert.equal(nodes.has(3), false);
 });
 

@@ -1,7 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { FieldEvaluator } from "@irradia/runtime";
-import { decoder, readAny, vectors } from "./vectors.js";
+import { refuses } from "./hostile.js";
+import { decoder, readAny, vector, vectors } from "./vectors.js";
 
 const TOLERANCE = 1e-5; // of the largest value
 const unzstd = await decoder();
@@ -30,3 +31,16 @@ for (const vector of vectors()) {
     });
   }
 }
+
+test("a field of irradiance has no coefficients to give", () => {
+  const { file, bytes } = vector("hash-fp16");
+  const light = new FieldEvaluator(readAny(file, bytes, {}));
+  refuses(() => light.coefficients([0, 1, 2]), /gives irradiance, not SH coefficients/);
+});
+
+test("places outside of the box have the light of its edge", () => {
+  const { file, bytes } = vector("triplane-fp16");
+  const light = new FieldEvaluator(readAny(file, bytes, {}));
+  const [x, y, z] = light.field.frame.max;
+  assert.deepEqual(light.irradiance([x + 3, y + 1, z], [0, 1, 0]), light.irradiance([x, y, z], [0, 1, 0]));
+});

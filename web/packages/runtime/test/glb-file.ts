@@ -10,43 +10,50 @@ export interface Glb {
 export const PAGES = { width: 4, height: 2, pages: 2 };
 export const N_PROBES = 6;
 
-/** The document and its binary chunk. */
-export function everything(): Glb {
-  const views: { buffer: 0; byteOffset: number; byteLength: number }[] = [];
-  const pieces: Uint8Array[] = [];
-  let at = 0;
-  const add = (data: ArrayBufferView): { bufferView: number } => {
+/** Collects what buffer views hold, each on a multiple of four bytes. */
+class Binary {
+  readonly views: { buffer: 0; byteOffset: number; byteLength: number }[] = [];
+  readonly #pieces: Uint8Array[] = [];
+
+  /** Adds a view; gives the entry that names it. */
+  add(data: ArrayBufferView): { bufferView: number } {
     const bytes = new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
     const padded = new Uint8Array(Math.ceil(bytes.length / 4) * 4);
     padded.set(bytes);
-    views.push({ buffer: 0, byteOffset: at, byteLength: bytes.length });
-    pieces.push(padded);
-    at += padded.length;
-    return { bufferView: views.length - 1 };
+    this.views.push({ buffer: 0, byteOffset: this.whole().length, byteLength: bytes.length });
+    this.#pieces.push(padded);
+    return { bufferView: this.views.length - 1 };
+  }
+
+  whole(): Uint8Array {
+    return new Uint8Array(Buffer.concat(this.#pieces));
+  }
+}
+
+/** The document and its binary chunk. */
+export function everything(): Glb {
+  const binary = new Binary();
+  const extensions = { IRRADIA_lighting: lighting(binary) };
+  const accessors = instanceTables(binary); // last, as a test relies on
+  const json = {
+    asset: { version: "2.0" },
+    buffers: [{ byteLength: binary.whole().length }],
+    bufferViews: binary.views,
+    accessors,
+    nodes: nodes(),
+    extensions,
   };
-  const floats = (n: number): Float32Array => Float32Array.from({ length: n }, (_, i) => i / 8);
-  const map = (encoding: "rgb9e5" | "half"): object => ({ ...add(ktx2(encoding)), encoding, scale: 2 });
-  const probes = {
-    light: "full",
-    count: N_PROBES,
+  return { json, binary: binary.whole() };
+}
+
+function lighting(binary: Binary): object {
+  const map = (encoding: "rgb9e5" | "half"): object => ({
+    ...binary.add(ktx2(encoding)),
+    encoding,
     scale: 2,
-    coefficients: add(new Uint16Array(27 * N_PROBES).map((_, i) => 0x3c00 + i)),
-    positions: add(floats(3 * N_PROBES)),
-    offsets: add(floats(3 * N_PROBES)),
-    states: add(Uint8Array.of(0, 1, 2, 0, 0, 0)),
-    validities: add(floats(N_PROBES)),
-    sky: add(floats(4 * N_PROBES)),
-    reaches: add(floats(N_PROBES)),
-    distances: { ...add(new Uint8Array(2 * 4 * N_PROBES)), size: 2 },
-    octree: {
-      origin: [0, 0, 0],
-      size: 2,
-      count: 1,
-      cells: add(Uint16Array.of(0, 0, 0, 1)),
-      corners: add(Uint32Array.of(0, 1, 2, 3, 4, 5, 0xffffffff, 0)),
-    },
-  };
-  const lighting = {
+  });
+  const png = Uint8Array.of(137, 80, 78, 71);
+  return {
     version: 1,
     lightmap: {
       quantity: "irradiance_over_pi",
@@ -56,50 +63,64 @@ export function everything(): Glb {
       ...PAGES,
     },
     directional: { mode: "mono-sh", maps: { sh_l0: map("rgb9e5"), sh_direction: map("half") } },
-    shadowMask: {
-      pages: [0, 1].map(() => ({ mimeType: "image/png", ...add(Uint8Array.of(137, 80, 78, 71)) })),
-    },
-    probes,
+    shadowMask: { pages: [0, 1].map(() => ({ mimeType: "image/png", ...binary.add(png) })) },
+    probes: probes(binary),
     field: {
       mimeType: "application/vnd.safetensors",
-      ...add(vector("hash-int8").bytes),
+      ...binary.add(vector("hash-int8").bytes),
       mode: "irradiance",
       light: "indirect",
       min: [-1, 0, 0.5],
       max: [1, 2.25, 4.5],
     },
   };
-  const table = {
-    ...add(Float32Array.of(0.5, 0.5, 0, 0, 0.25, 0.25, 0.5, 0.5)),
-    componentType: 5126,
-    count: 2,
-    type: "VEC4",
+}
+
+function probes(binary: Binary): object {
+  const floats = (n: number): object => binary.add(Float32Array.from({ length: n }, (_, i) => i / 8));
+  return {
+    light: "full",
+    count: N_PROBES,
+    scale: 2,
+    coefficients: binary.add(new Uint16Array(27 * N_PROBES).map((_, i) => 0x3c00 + i)),
+    positions: floats(3 * N_PROBES),
+    offsets: floats(3 * N_PROBES),
+    states: binary.add(Uint8Array.of(0, 1, 2, 0, 0, 0)),
+    validities: floats(N_PROBES),
+    sky: floats(4 * N_PROBES),
+    reaches: floats(N_PROBES),
+    distances: { ...binary.add(new Uint8Array(2 * 4 * N_PROBES)), size: 2 },
+    octree: {
+      origin: [0, 0, 0],
+      size: 2,
+      count: 1,
+      cells: binary.add(Uint16Array.of(0, 0, 0, 1)),
+      corners: binary.add(Uint32Array.of(0, 1, 2, 3, 4, 5, 0xffffffff, 0)),
+    },
   };
-  const pages = { ...add(Uint16Array.of(1, 0xffff)), componentType: 5123, count: 2, type: "SCALAR" };
+}
+
+/** Rectangles of two instances, and their pages; the second has none. */
+function instanceTables(binary: Binary): object[] {
+  const rectangles = binary.add(Float32Array.of(0.5, 0.5, 0, 0, 0.25, 0.25, 0.5, 0.5));
+  const pages = binary.add(Uint16Array.of(1, 0xffff));
+  return [
+    { ...rectangles, componentType: 5126, count: 2, type: "VEC4" },
+    { ...pages, componentType: 5123, count: 2, type: "SCALAR" },
+  ];
+}
+
+function nodes(): object[] {
   const primitives = [
     [{ texCoord: 1, page: 0 }, {}, { texCoord: 2, page: 1, scale: [0.12, 0.12], offset: [0.5, 0.25] }],
     [{ texCoord: 1, scaleOffsets: 0, pages: 1 }],
   ];
-  const nodes = [
+  const lamp = { bakedLight: 0, bakedIesLight: { light: 4 }, shadowMaskChannel: 3 };
+  return [
     ...primitives.map((entries) => ({ extensions: { IRRADIA_lighting: { primitives: entries } } })),
-    { extensions: { IRRADIA_lighting: { bakedLight: 0, shadowMaskChannel: 3 } } },
+    { extensions: { IRRADIA_lighting: lamp } },
     { name: "bare" },
   ];
-  const binary = new Uint8Array(at);
-  let first = 0;
-  for (const piece of pieces) {
-    binary.set(piece, first);
-    first += piece.length;
-  }
-  const json = {
-    asset: { version: "2.0" },
-    buffers: [{ byteLength: at }],
-    bufferViews: views,
-    accessors: [table, pages],
-    nodes,
-    extensions: { IRRADIA_lighting: lighting },
-  };
-  return { json, binary };
 }
 
 /** The file. */

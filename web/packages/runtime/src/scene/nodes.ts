@@ -26,6 +26,8 @@ export interface NodeLight {
   readonly primitives: readonly (PrimitiveLight | undefined)[];
   /** The KHR_lights_punctual light that stood here, whose light is in the map. */
   readonly bakedLight?: number;
+  /** The EXT_lights_ies light that stood here, likewise. */
+  readonly bakedIesLight?: number;
   /** Channel of the shadow mask for the live light on this node. */
   readonly shadowMaskChannel?: number;
 }
@@ -48,9 +50,11 @@ export function readNodeLight(file: GltfFile, node: number, lightmap?: LightmapE
   const primitives = entry.objects("primitives").map((primitive) => {
     return primitive.has("texCoord") ? readPrimitive(file, primitive, lightmap?.pages ?? 0) : undefined;
   });
+  const measured = entry.optional("bakedIesLight");
   return {
     primitives,
     ...(entry.has("bakedLight") && { bakedLight: entry.integer("bakedLight", 0, MAX_INDEX) }),
+    ...(measured && { bakedIesLight: measured.integer("light", 0, MAX_INDEX) }),
     ...(entry.has("shadowMaskChannel") && { shadowMaskChannel: entry.integer("shadowMaskChannel", 0, 3) }),
   };
 }
