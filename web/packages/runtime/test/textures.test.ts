@@ -41,7 +41,7 @@ function half(bits: number): number {
 }
 
 /** What a shader does: feature f of an entry, from the texture's words and the constants. */
-function fetched(table: TableTexture, words: Uint32Array, constants: Float32Array, firstScale: number) {
+function fetched(table: TableTexture, words: Uint32Array, constants: Float32Array, scalesVec4: number) {
   const { bits, nFeatures } = table.entry;
   return (placed: TableTexture["tensors"][number], entry: number, f: number): number => {
     const { word, bit } = entryPlace(table, placed.firstTexel, entry);
@@ -54,7 +54,7 @@ function fetched(table: TableTexture, words: Uint32Array, constants: Float32Arra
     if (bits === 16) return half(value);
     const code = bits === 8 ? (value << 24) >> 24 : value - 8;
     const block = Math.floor((entry * nFeatures + f) / placed.block);
-    return Math.fround(code * (constants[4 * firstScale + placed.firstScale + block] ?? Number.NaN));
+    return Math.fround(code * (constants[4 * scalesVec4 + placed.firstScale + block] ?? Number.NaN));
   };
 }
 
@@ -67,7 +67,7 @@ function expectTables(field: Field, limits: TextureLimits): void {
     const words = packed.tables[i] ?? new Uint32Array();
     assert.equal(words.byteLength, table.texture.nBytes);
     assert.ok(Math.max(table.texture.width, table.texture.height) <= limits.maxSize);
-    const fetch = fetched(table, words, packed.constants, plan.constants.firstScale);
+    const fetch = fetched(table, words, packed.constants, plan.constants.scalesVec4);
     const { nFeatures } = table.entry;
     for (const placed of table.tensors) {
       seen.push(placed.tensor);

@@ -19,6 +19,7 @@ import { TriPlane } from "../field/encodings/tri-plane.js";
 import type { Field } from "../field/field.js";
 import { layerShapes } from "../field/spec.js";
 import { bitsPerValue, type Tensor } from "../field/tensor.js";
+import { product } from "../numbers.js";
 import {
   planList,
   planTexture,
@@ -49,7 +50,7 @@ export interface TablePlacement {
   readonly tensor: string;
   /** In a list: its first texel. In planes 0. */
   readonly firstTexel: number;
-  /** Place of its scales among `constants`' numbers, from 0 on behind the perceptron; -1 without codes. */
+  /** Its first among the scales of all tables; −1 where it has no codes. */
   readonly firstScale: number;
   /** Values that share a scale: value v of the unpadded tensor has scale `firstScale + ⌊v / block⌋`. */
   readonly block: number;
@@ -84,8 +85,8 @@ export interface LayerPlacement {
 export interface ConstantsPlan {
   readonly nVec4: number;
   readonly layers: readonly LayerPlacement[];
-  /** vec4 that holds the first four scales; scale s is component s mod 4 of vec4 `firstScale + ⌊s / 4⌋`. */
-  readonly firstScale: number;
+  /** Where scales begin: scale s is component s mod 4 of vec4 `scalesVec4 + ⌊s / 4⌋`. */
+  readonly scalesVec4: number;
   readonly nScales: number;
   /** Absent where the list fits a uniform buffer. An rgba32float list otherwise. */
   readonly texture?: TexturePlan;
@@ -104,8 +105,8 @@ export interface FieldTextures {
  */
 export function planFieldTextures(field: Field, limits: TextureLimits): FieldTextures {
   let nScales = 0;
-  const tables = learnedEncodings(field).map(({ owner, encoding }) => {
-    const table = planTable(field, owner, encoding, nScales, limits);
+  const tables = learnedEncodings(field).map((learned) => {
+    const table = planTable(field, learned, nScales, limits);
     for (const placed of table.tensors) nScales += scaleCount(field, placed);
     return table;
   });
@@ -119,49 +120,59 @@ export function tensorOf(field: Field, name: string): Tensor {
   return tensor;
 }
 
+interface LearnedEncoding {
+  readonly owner: string;
+  readonly encoding: Encoding;
+}
+
 /** Encodings with tables; composites in their parts. */
-function learnedEncodings({ spec }: Field): { owner: string; encoding: Encoding }[] {
-  const leaves = (owner: string, encoding: Encoding): { owner: string; encoding: Encoding }[] => {
-    if (encoding instanceof Composite)
-      return encoding.parts.flatMap((part, i) => leaves(`${owner}.${i}`, part));
+function learnedEncodings({ spec }: Field): LearnedEncoding[] {
+  const leaves = (owner: string, encoding: Encoding): LearnedEncoding[] => {
+    const isComposite = encoding instanceof Composite;
+    if (isComposite) return encoding.parts.flatMap((part, i) => leaves(`${owner}.${i}`, part));
     return encoding.slots.length ? [{ owner, encoding }] : [];
   };
-  return [
-    ...leaves("position", spec.position),
-    ...(spec.direction ? leaves("direction", spec.direction) : []),
-  ];
+  const direction = spec.direction ? leaves("direction", spec.direction) : [];
+  return [...leaves("position", spec.position), ...direction];
 }
 
 function planTable(
   field: Field,
-  owner: string,
-  encoding: Encoding,
-  nScalesBefore: number,
+  { owner, encoding }: LearnedEncoding,
+  firstScale: number,
   limits: TextureLimits,
 ): TableTexture {
   const names = encoding.slots.map((slot) => `${owner}.${slot.name}`);
-  const isPlanes = encoding instanceof TriPlane;
-  const nFeatures = encoding.slots[0]?.shape.at(-1) ?? 1;
   const bits = commonBits(names.map((name) => tensorOf(field, name)));
+  const nFeatures = encoding.slots[0]?.shape.at(-1) ?? 1;
+  const isPlanes = encoding instanceof TriPlane;
   const { entry, format } = planEntry(bits, nFeatures, isPlanes);
-  let [firstTexel, firstScale] = [0, nScalesBefore];
-  const tensors = names.map((tensor) => {
-    const { shape, stored } = tensorOf(field, tensor);
-    const isCoded = bits < 16 && stored.kind === "codes";
-    const placed = {
-      tensor,
-      firstTexel,
-      firstScale: isCoded ? firstScale : -1,
-      block: isCoded ? stored.block : 0,
-    };
-    firstScale += scaleCount(field, placed);
-    if (!isPlanes) firstTexel += Math.ceil((shape[0] ?? 0) / entry.entriesPerTexel) * entry.texelsPerEntry;
-    return placed;
-  });
+  const { tensors, nTexels } = placeTensors(field, names, entry, firstScale);
   const texture = isPlanes
     ? planTexture(format, [encoding.resolution, encoding.resolution, 3 * entry.texelsPerEntry], limits, owner)
-    : planList(format, firstTexel, limits, owner);
+    : planList(format, nTexels, limits, owner);
   return { owner, layout: isPlanes ? "planes" : "list", texture, entry, tensors };
+}
+
+/** Tensors one behind another, each on a whole texel, and so their scales. */
+function placeTensors(
+  field: Field,
+  names: readonly string[],
+  entry: EntryLayout,
+  scalesBefore: number,
+): { tensors: TablePlacement[]; nTexels: number } {
+  let [nTexels, nScales] = [0, scalesBefore];
+  const tensors = names.map((tensor) => {
+    const { shape, stored } = tensorOf(field, tensor);
+    const isCoded = stored.kind === "codes" && stored.bits === entry.bits;
+    const scales = isCoded ? { firstScale: nScales, block: stored.block } : { firstScale: -1, block: 0 };
+    const placed = { tensor, firstTexel: nTexels, ...scales };
+    const nEntries = product(shape.slice(0, -1));
+    nTexels += Math.ceil(nEntries / entry.entriesPerTexel) * entry.texelsPerEntry;
+    nScales += scaleCount(field, placed);
+    return placed;
+  });
+  return { tensors, nTexels };
 }
 
 /** What all tensors are stored in, or floats where they differ. */
@@ -204,7 +215,7 @@ function planConstants(field: Field, nScales: number, limits: TextureLimits): Co
   return {
     nVec4,
     layers,
-    firstScale: next,
+    scalesVec4: next,
     nScales,
     ...(!fits && { texture: planList("rgba32float", nVec4, limits, "perceptron") }),
   };

@@ -110,7 +110,7 @@ function packConstants(field: Field, { constants, tables }: FieldTextures): Floa
   for (const { tensor, firstScale } of tables.flatMap((table) => table.tensors)) {
     const { stored } = tensorOf(field, tensor);
     if (stored.kind !== "codes" || firstScale < 0) continue;
-    const first = 4 * constants.firstScale + firstScale;
+    const first = 4 * constants.scalesVec4 + firstScale;
     for (let block = 0; block < stored.scales.length; block++)
       numbers[first + block] = scaleAt(stored, block);
   }

@@ -13,7 +13,7 @@ export type TextureFormat =
   | "rgb9e5ufloat"
   | "rgba16float";
 
-/** A two-dimensional array texture without mip levels. */
+/** A two-dimensional array texture without mip levels, also where it has a single layer: one shader reads all. */
 export interface TexturePlan {
   readonly format: TextureFormat;
   readonly width: number;

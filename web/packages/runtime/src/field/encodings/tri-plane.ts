@@ -9,6 +9,14 @@ const PLANES = [
   [1, 2],
 ] as const;
 
+/** Of a cell: steps along columns and rows. */
+const CORNERS = [
+  [0, 0],
+  [1, 0],
+  [0, 1],
+  [1, 1],
+] as const;
+
 export interface TriPlaneOptions {
   /** Texels along each side of a plane. */
   resolution: number;
@@ -82,10 +90,3 @@ export class TriPlane implements Encoding {
     return clamp(Math.fround(Math.fround(scale * coordinate) + offset), 0, this.resolution - 1);
   }
 }
-
-const CORNERS = [
-  [0, 0],
-  [1, 0],
-  [0, 1],
-  [1, 1],
-] as const;
