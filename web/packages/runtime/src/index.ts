@@ -9,7 +9,7 @@ export { OneBlob } from "./field/encodings/one-blob.js";
 export { ENCODING_TYPES } from "./field/encodings/registry.js";
 export { SphericalHarmonics } from "./field/encodings/spherical-harmonics.js";
 export { TriPlane } from "./field/encodings/tri-plane.js";
-export { type Field, FieldEvaluator } from "./field/field.js";
+export { type Field, FieldEvaluator, tensorOf } from "./field/field.js";
 export { irradianceOf, irradianceWeights } from "./field/sh.js";
 export {
   type Activation,
@@ -71,7 +71,13 @@ export {
   readLighting,
   viewsOfLighting,
 } from "./scene/lighting.js";
-export { type NodeLight, type PrimitiveLight, type Rectangle, readNodeLight } from "./scene/nodes.js";
+export {
+  type NodeLight,
+  type PrimitiveLight,
+  type Rectangle,
+  readNodeLight,
+  viewsOfNodes,
+} from "./scene/nodes.js";
 export {
   NO_PROBE,
   type ProbeGrid,

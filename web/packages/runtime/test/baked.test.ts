@@ -16,6 +16,7 @@ import {
   readProbes,
   texelRgb,
   viewsOfLighting,
+  viewsOfNodes,
   WEBGL2_LIMITS,
 } from "@irradia/runtime";
 import { everything, type Glb, glbBytes, N_PROBES, PAGES, texelAt } from "./glb-file.js";
@@ -90,10 +91,10 @@ test("behind another loader, fetching the views that it is told to, reads the sa
   const glb = everything();
   const whole = baked();
   const { views } = readGlb(glbBytes(glb));
-  const lighting = readLighting(gltfFile(glb.json, views).json) ?? assert.fail();
-  const wanted = viewsOfLighting(lighting).map((view) => [view, views(view, "test")] as const);
-  assert.equal(wanted.length, glb.json.bufferViews.length - 2); // nodes ask for instances' tables
-  const fetched = new Map(wanted);
+  const { json } = gltfFile(glb.json, views);
+  const wanted = [...viewsOfLighting(readLighting(json) ?? assert.fail()), ...viewsOfNodes(json)];
+  assert.equal(wanted.length, glb.json.bufferViews.length);
+  const fetched = new Map(wanted.map((view) => [view, views(view, "test")]));
   const file = gltfFile(glb.json, (index) => fetched.get(index) ?? assert.fail(`${index} wasn't fetched`));
 
   const { lightmap, directional, probes, field } = readLighting(file.json) ?? assert.fail();
@@ -104,7 +105,7 @@ test("behind another loader, fetching the views that it is told to, reads the sa
   }
   assert.deepEqual(readProbes(probes, file.views), whole.probes);
   assert.deepEqual(readFieldOf(field, file.views, {}).tensors, whole.field?.tensors);
-  assert.deepEqual(readNodeLight(file, 0, lightmap), whole.nodes.get(0));
+  for (const [node, light] of whole.nodes) assert.deepEqual(readNodeLight(file, node, lightmap), light);
 });
 
 test("lightmaps become array textures that filter", () => {

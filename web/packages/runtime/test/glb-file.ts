@@ -34,7 +34,7 @@ class Binary {
 export function everything(): Glb {
   const binary = new Binary();
   const extensions = { IRRADIA_lighting: lighting(binary) };
-  const accessors = instanceTables(binary); // last, as a test relies on
+  const accessors = instanceTables(binary);
   const json = {
     asset: { version: "2.0" },
     buffers: [{ byteLength: binary.whole().length }],

@@ -144,6 +144,21 @@ test("JSON that nests too deep is refused", () => {
   refuses(() => readField(file), /nests over 128 deep/);
 });
 
+test("composites of many parts, or deep in each other, are refused", () => {
+  const composite = (parts: unknown[]): unknown => ({ type: "composite", parts });
+  const withPosition = (position: unknown) =>
+    withAbout(grid, ({ spec }) => Object.assign(spec, { position }));
+  const identity = { type: "identity" };
+  refuses(
+    () => readField(withPosition(composite(Array(17).fill(identity)))),
+    /parts: expected 1 to 16 parts, found 17/,
+  );
+  refuses(() => readField(withPosition(composite([]))), /expected 1 to 16 parts, found 0/);
+  let deep: unknown = identity;
+  for (let i = 0; i < 4; i++) deep = composite([deep]);
+  refuses(() => readField(withPosition(deep)), /at most 3 deep/);
+});
+
 test("keys that name an object's inner parts are keys like others", () => {
   const polluted = withHeader(grid, (header) => {
     header.__metadata__["irradia.field"] = '{"__proto__":{"version":1},"constructor":1}';

@@ -16,6 +16,13 @@ export interface Field {
   readonly provenance: Readonly<Record<string, unknown>>;
 }
 
+/** A tensor by its name in files; an InputError where the field has none. */
+export function tensorOf(field: Field, name: string): Tensor {
+  const tensor = field.tensors.get(name);
+  expect(tensor !== undefined, `the tensor '${name}' is missing`, "field");
+  return tensor;
+}
+
 /** Refuses tensors that are missing, unknown, or of another shape than the spec's. */
 export function expectTensors(field: Field, where: string): void {
   const shapes = tensorShapes(field.spec);
@@ -38,11 +45,7 @@ export class FieldEvaluator {
   readonly #features: Float64Array;
 
   constructor(field: Field) {
-    const values = (name: string): Float32Array => {
-      const tensor = field.tensors.get(name);
-      expect(tensor !== undefined, `the tensor '${name}' is missing`, "field");
-      return tensorValues(tensor);
-    };
+    const values = (name: string): Float32Array => tensorValues(tensorOf(field, name));
     this.field = field;
     this.#layers = layerShapes(field.spec).map((_, i) => ({
       weight: values(`mlp.${i}.weight`),

@@ -16,7 +16,7 @@
 import type { Encoding } from "../field/encoding.js";
 import { Composite } from "../field/encodings/composite.js";
 import { TriPlane } from "../field/encodings/tri-plane.js";
-import type { Field } from "../field/field.js";
+import { type Field, tensorOf } from "../field/field.js";
 import { layerShapes } from "../field/spec.js";
 import { bitsPerValue, type Tensor } from "../field/tensor.js";
 import { product } from "../numbers.js";
@@ -111,13 +111,6 @@ export function planFieldTextures(field: Field, limits: TextureLimits): FieldTex
     return table;
   });
   return { tables, constants: planConstants(field, nScales, limits) };
-}
-
-/** A tensor that the field is known to have. */
-export function tensorOf(field: Field, name: string): Tensor {
-  const tensor = field.tensors.get(name);
-  if (!tensor) throw new Error(`a field without ${name}: it wasn't read by this package`);
-  return tensor;
 }
 
 interface LearnedEncoding {

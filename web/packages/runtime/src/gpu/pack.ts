@@ -1,8 +1,8 @@
 /** Fills the textures that `planFieldTextures` planned. */
-import type { Field } from "../field/field.js";
+import { type Field, tensorOf } from "../field/field.js";
 import { bitsPerValue, codeAt, scaleAt, storedBytes, type Tensor, tensorValues } from "../field/tensor.js";
 import { product } from "../numbers.js";
-import { type FieldTextures, type TableTexture, tensorOf } from "./field-textures.js";
+import type { FieldTextures, TableTexture } from "./field-textures.js";
 import type { TexturePlan } from "./texture.js";
 
 const WORDS = { r32uint: 1, rg32uint: 2, rgba32uint: 4 } as const;

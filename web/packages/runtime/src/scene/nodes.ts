@@ -59,6 +59,22 @@ export function readNodeLight(file: GltfFile, node: number, lightmap?: LightmapE
   };
 }
 
+/** Buffer views of the tables that nodes with instances have, for loaders that fetch views one by one. */
+export function viewsOfNodes(document: JsonView): number[] {
+  const primitives = document.objects("nodes").flatMap((node) => {
+    return node.optional("extensions")?.optional(EXTENSION)?.objects("primitives") ?? [];
+  });
+  const views = primitives.flatMap((entry) => {
+    const tables = ["scaleOffsets", "pages"].filter((key) => entry.has(key));
+    return tables.map((key) => {
+      return document
+        .element("accessors", entry.integer(key, 0, MAX_INDEX))
+        .integer("bufferView", 0, MAX_INDEX);
+    });
+  });
+  return [...new Set(views)];
+}
+
 function readPrimitive(file: GltfFile, entry: JsonView, nPages: number): PrimitiveLight {
   const texCoord = entry.integer("texCoord", 1, 31);
   expect(nPages > 0, "expected a lightmap on the document", entry.pointer);
