@@ -89,7 +89,7 @@ class SampleFile:
 
     @property
     def variance(self) -> F32:
-        """(N,) estimated variance of the value's mean over channels, in its unit squared; 0 unknown."""
+        """(N,) estimated variance of E, averaged over channels, in its unit squared; 0 unknown."""
         return self.rows[:, -1]
 
     def grown(self) -> SampleFile:

@@ -39,8 +39,8 @@ class Estimate:
 
     Attributes:
         values: (N, 3) E in W·m⁻², or (N, k, 3) coefficients of radiance.
-        variance: (N,) estimated variance of the mean over channels of E, from N_BLOCKS blocks. Of
-            coefficients it is that of E's too, averaged over all normals.
+        variance: (N,) estimated variance of E, averaged over channels, from N_BLOCKS blocks. Of
+            coefficients it is that of E too, averaged over all normals.
     """
 
     values: F32
@@ -66,7 +66,7 @@ def gather_irradiance(
     total = _irradiance_loop(world, there.fetch(number), stream, _per_block(n_samples), cache)
     dr.eval(total)
     blocks = np.array(total, np.float64).T.reshape(-1, N_BLOCKS, 3) * (math.pi * N_BLOCKS / n_samples)
-    variance = blocks.mean(axis=2).var(axis=1, ddof=1) / N_BLOCKS
+    variance = blocks.var(axis=1, ddof=1).mean(axis=1) / N_BLOCKS
     return Estimate(blocks.mean(axis=1).astype(np.float32), variance.astype(np.float32))
 
 
@@ -93,7 +93,7 @@ def gather_coefficients(
     blocks = stacked.transpose(2, 0, 1).reshape(-1, N_BLOCKS, n_coefficients, 3) * (N_BLOCKS / n_samples)
     # The mean over all normals of (Σ Aᵢ cᵢ Yᵢ)² is Σ Aᵢ² cᵢ² / 4π: the functions are orthonormal.
     lobe = COSINE_LOBE[BAND[:n_coefficients]]
-    variance = (blocks.mean(axis=3).var(axis=1, ddof=1) / N_BLOCKS) @ (lobe**2 / (4.0 * math.pi))
+    variance = (blocks.var(axis=1, ddof=1).mean(axis=2) / N_BLOCKS) @ (lobe**2 / (4.0 * math.pi))
     return Estimate(blocks.mean(axis=1).astype(np.float32), variance.astype(np.float32))
 
 

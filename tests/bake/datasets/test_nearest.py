@@ -30,6 +30,17 @@ def test_every_region_around_a_triangle_is_measured():
     assert (found <= np.array(expected) + 1e-12).all()
 
 
+@pytest.mark.parametrize("same", [(0, 0, 1), (0, 1, 0), (0, 1, 1), (0, 0, 0)])
+def test_a_triangle_without_area_is_as_far_as_its_edges(same):
+    from irradia.bake.datasets.nearest_kernels import build, nearest
+
+    rng = np.random.default_rng(4)
+    a, b, c = corners = rng.normal(size=(2, 3))[list(same)]
+    points = rng.normal(size=(50, 3)) * 2.0
+    found = np.sqrt(nearest(points, corners[None], *build(corners[None]))[0])
+    np.testing.assert_allclose(found, [closest(point, a, b, c) for point in points], atol=0.02)
+
+
 def test_tree_finds_what_a_look_at_every_triangle_finds():
     from irradia.bake.datasets.nearest_kernels import build, nearest
 

@@ -66,6 +66,21 @@ def test_the_noise_of_the_samples_is_taken_out(flat):
     assert not with_noise.under_noise
 
 
+def test_the_noise_of_coloured_light_is_taken_out(make):
+    """Each channel as noisy for its light as the others, and what is stored their mean variance."""
+    noisy, light = make(50_000), np.array([3.0, 1.0, 0.3])
+    clean = make(50_000)
+    clean.rows[:, 6:9], clean.rows[:, 9] = light, 0.0
+    noise = np.random.default_rng(2).standard_normal((len(noisy), 3)) * 0.05 * light
+    noisy.rows[:, 6:9] = light + noise
+    noisy.rows[:, 9] = np.mean((0.05 * light) ** 2)
+
+    def wrong(position, normal):
+        return light * (1.0 + 0.1 * np.sin(20.0 * position))
+
+    assert judged(noisy, wrong).relmse == pytest.approx(judged(clean, wrong).relmse, rel=0.1)
+
+
 def test_an_error_below_the_noise_is_flagged_and_never_nothing(flat):
     figures = judged(flat(0.04), lambda position, normal: np.full((len(position), 3), 2.0))
     assert figures.under_noise

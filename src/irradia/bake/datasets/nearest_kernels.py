@@ -117,7 +117,7 @@ def _to_box(p, box):
 
 @njit(cache=True)
 def _to_triangle(p, a, b, c):
-    """Squared distance."""
+    """Squared distance (Ericson 2005, 5.1.5). Edges without a length are passed over."""
     ab, ac, ap = b - a, c - a, p - a
     d1, d2 = _dot(ab, ap), _dot(ac, ap)
     if d1 <= 0.0 and d2 <= 0.0:
@@ -131,15 +131,18 @@ def _to_triangle(p, a, b, c):
     if d6 >= 0.0 and d5 <= d6:
         return _dot(cp, cp)
     vc = d1 * d4 - d3 * d2
-    if vc <= 0.0 and d1 >= 0.0 and d3 <= 0.0:
+    if vc <= 0.0 and d1 >= 0.0 and d3 <= 0.0 and d1 > d3:
         return _length2(ap - ab * (d1 / (d1 - d3)))
     vb = d5 * d2 - d1 * d6
-    if vb <= 0.0 and d2 >= 0.0 and d6 <= 0.0:
+    if vb <= 0.0 and d2 >= 0.0 and d6 <= 0.0 and d2 > d6:
         return _length2(ap - ac * (d2 / (d2 - d6)))
     va = d3 * d6 - d5 * d4
-    if va <= 0.0 and d4 >= d3 and d5 >= d6:
+    if va <= 0.0 and d4 >= d3 and d5 >= d6 and d4 - d3 > d6 - d5:
         return _length2(bp - (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))))
-    scale = 1.0 / (va + vb + vc)
+    area = va + vb + vc
+    if area <= 0.0:
+        return min(_dot(ap, ap), _dot(bp, bp), _dot(cp, cp))
+    scale = 1.0 / area
     return _length2(ap - ab * (vb * scale) - ac * (vc * scale))
 
 

@@ -107,8 +107,7 @@ def judge(samples: SampleFile, rows: NDArray[np.int64], frame: FieldFrame) -> Ju
     table = np.array(samples.rows[rows])
     n_values, feeds_normal = samples.info.n_values, samples.info.has_normals
     normal = table[:, 3:6] if feeds_normal else _directions(len(table))
-    # Of coefficients, a variance of the mean says too little of E's.
-    known = feeds_normal and bool(np.any(table[:, -1] > 0.0))
+    known = bool(np.any(table[:, -1] > 0.0))
     return Judge(
         frame.to_unit(table[:, :3]),
         np.ascontiguousarray(normal),
@@ -136,7 +135,7 @@ def _figures(found: NDArray, truth: NDArray, variance: F32 | None, mae: float) -
     mean = float(np.mean(np.abs(truth))) or 1.0
     weight = 1.0 / (truth**2 + EPSILON * mean**2)
     squared = (found - truth) ** 2
-    noise = np.zeros_like(truth) if variance is None else np.repeat(variance[:, None], 3, axis=1)
+    noise = np.zeros_like(truth) if variance is None else _by_channel(variance, truth)
     mse, mse_noise = _without_noise(squared, noise)
     relmse, relmse_noise = _without_noise(squared * weight, noise * weight)
     peak = float(np.percentile(np.abs(truth), PEAK_PERCENTILE)) or 1.0
@@ -149,6 +148,14 @@ def _figures(found: NDArray, truth: NDArray, variance: F32 | None, mae: float) -
         noise_relmse=None if variance is None else relmse_noise,
         under_noise=mse < mse_noise or relmse < relmse_noise,
     )
+
+
+def _by_channel(variance: F32, truth: NDArray) -> NDArray:
+    """Variance (N, 3) from its mean over channels, as if each were as noisy for its light as the others."""
+    squared = truth**2
+    total = squared.sum(axis=1, keepdims=True)
+    share = np.divide(squared, total, out=np.full_like(squared, 1.0 / 3.0), where=total > 0.0)
+    return 3.0 * variance[:, None] * share
 
 
 def _without_noise(error: NDArray, noise: NDArray) -> tuple[float, float]:
