@@ -15,7 +15,7 @@ from irradia.core.provenance import source_commit
 from irradia.field.encodings import HashGrid
 from irradia.field.files import load_field, save_field
 from irradia.field.presets import PRESETS, Preset
-from irradia.field.quantise import FinishOptions, finish
+from irradia.field.quantise import FinishOptions, finish, train_on
 from irradia.field.quantised import Bits
 from irradia.field.registry import print_spec
 from irradia.field.spec import FieldSpec
@@ -160,13 +160,9 @@ class Bench:
 
 
 def _round(trained: Path, weights: Path, bits: Bits | None, data: Path, batch_size: int) -> None:
-    """Writes a trained field with its tables in so many bits, or as halves."""
-    field = load_field(trained)
-    if bits is None:
-        save_field(weights, field)
-    else:
-        options = FinishOptions(batch_size=batch_size)
-        save_field(weights, finish(field, bits, open_samples(data), options))
+    """Writes a trained field with its tables in so many bits, or as halves after as many steps more."""
+    field, samples, options = load_field(trained), open_samples(data), FinishOptions(batch_size=batch_size)
+    save_field(weights, finish(field, bits, samples, options) if bits else train_on(field, samples, options))
 
 
 def scene_name(spec: str) -> str:

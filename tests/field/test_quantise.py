@@ -18,7 +18,7 @@ from irradia.field.encodings import Frequency, HashGrid, Identity, TriPlane
 from irradia.field.field import Field
 from irradia.field.init import new_state
 from irradia.field.native_fields import decode_field, encode_field
-from irradia.field.quantise import FinishOptions, finish, round_tables
+from irradia.field.quantise import FinishOptions, finish, round_tables, train_on
 from irradia.field.quantised import pack_nibbles, quantise, unpack_nibbles
 from irradia.field.spec import FieldFrame, FieldSpec
 from irradia.field.training.batches import MemorySource
@@ -172,6 +172,13 @@ def test_decoder_learns_with_the_tables_that_are_shipped(grid_field: Field) -> N
     options = FinishOptions(rounds=2, round_steps=1, steps=2, batch_size=64)
     finish(grid_field, 8, WORLD, options, backend=computing)
     assert [options.frozen for options in computing.seen] == [frozenset(), frozenset(), {"position"}]
+
+
+def test_what_bits_cost_is_measured_against_as_many_steps(grid_field: Field) -> None:
+    options = FinishOptions(rounds=6, round_steps=5, steps=60, batch_size=2048)
+    further = train_on(grid_field, WORLD, options, backend="numba")
+    assert error(further) < error(grid_field)
+    assert error(further) <= error(finish(grid_field, 4, WORLD, options, backend="numba").field)
 
 
 def test_each_level_or_plane_has_a_scale_of_its_own(grid_field: Field) -> None:

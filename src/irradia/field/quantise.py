@@ -136,6 +136,32 @@ def finish(
     return coded
 
 
+def train_on(
+    field: Field,
+    samples: SampleFile,
+    options: FinishOptions | None = None,
+    *,
+    backend: Backend | str = "auto",
+    progress: Progress | None = None,
+) -> Field:
+    """The lessons of :func:`finish` without the rounding: what is between both is what few bits cost.
+
+    Arguments are those of :func:`finish`.
+    """
+    options = options or FinishOptions()
+    check_fit(samples, field.spec)
+    computing = find_backend(backend, field.spec) if isinstance(backend, str) else backend
+    tables = frozenset(field.spec.parameter_shapes()) & {"position", "direction"}
+    together = options.rounds * options.round_steps if tables else 0
+    total = together + options.steps
+    with (progress or silent_progress()).stage("Train on", total, "steps") as stage:
+        school = _School(field, _rows(samples, None, field.frame), options, computing, stage, total)
+        learnt = school.teach(field.parameters, together, average=0.0) if together else field.parameters
+        if options.steps:
+            learnt = school.teach(learnt, options.steps, average=options.average, frozen=tables)
+    return replace(field, parameters={**field.parameters, **learnt})
+
+
 def _whole(values: NDArray[np.float32]) -> int:
     """Values of a level (entries, features), or of one of several planes (plane, row, column, feature)."""
     return values[0].size if values.ndim > 2 else values.size
