@@ -64,6 +64,21 @@ def test_a_bin_holds_the_same_numbers(kind, version, workshop, tmp_path):
     assert {path.name for path in tmp_path.glob("*.samples")} == {"data.samples", "data.validation.samples"}
 
 
+def test_no_earlier_samples_for_validation_are_left_beside_new_ones(workshop, tmp_path):
+    assert sample(workshop, tmp_path / "data.samples") == 0
+    assert sample(workshop, tmp_path / "data.samples", "--validation", "0") == 0
+    assert [path.name for path in tmp_path.glob("*.samples")] == ["data.samples"]
+
+
+def test_a_bin_that_fails_leaves_nothing_beside_it(workshop, tmp_path, monkeypatch):
+    def fail(*_: object) -> None:
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr("irradia.formats.sample_writer.SampleWriter.append", fail)
+    assert sample(workshop, tmp_path / "data.bin", "--validation", "0") != 0
+    assert not list(tmp_path.glob("data*"))
+
+
 def test_a_finished_bake_serves_as_the_light_of_surfaces(workshop, tmp_path):
     bake(workshop, tmp_path / "bake", "--samples", "64")
     assert sample(workshop, tmp_path / "a.samples", "--samples", "64") == 0

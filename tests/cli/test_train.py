@@ -38,8 +38,9 @@ def rows(n, seed, kind):
     return np.concatenate(columns, axis=1).astype(np.float32)
 
 
-def write_samples(path, n=600, seed=0, kind="surface"):
-    info = SampleInfo(kind, BOX, n_coefficients=4 if kind == "sh" else 0)
+def write_samples(path, n=600, seed=0, kind="surface", box=BOX, scene=None):
+    provenance = {} if scene is None else {"config": {"scene": "room.glb"}, "inputs": {"room.glb": scene}}
+    info = SampleInfo(kind, box, n_coefficients=4 if kind == "sh" else 0, provenance=provenance)
     with SampleWriter(path, info) as writer:
         writer.append(rows(n, seed, kind))
     return path
@@ -180,6 +181,20 @@ def test_samples_for_validation_are_found_beside_the_data(train, data, tmp_path)
     write_samples(tmp_path / "other.samples", n=50, seed=8)
     _, said = train(data, "-o", tmp_path / "f.safetensors", "--validation", tmp_path / "other.samples")
     assert said["validation"]["n_samples"] == 50
+
+
+@pytest.mark.parametrize("left", [{"box": (BOX[0], (1.0, 1.0, 2.0))}, {"scene": "5678"}])
+@pytest.mark.parametrize("end", [(), ("--validation", "left.validation.samples")])
+def test_samples_of_another_scene_are_not_judged_by(train, tmp_path, monkeypatch, left, end):
+    monkeypatch.chdir(tmp_path)
+    data = write_samples(tmp_path / "left.samples", scene="1234")
+    write_samples(tmp_path / "left.validation.samples", n=70, **left)
+    code, said = train(data, "-o", tmp_path / "f.safetensors", *end)
+    if end and "box" in left:  # asked for by name, and the boxes meet
+        assert code == 0
+    else:
+        assert code == 2
+        assert "another scene" in said["error"]["message"]
 
 
 def test_a_spec_file_says_all_of_the_field(train, data, tmp_path):

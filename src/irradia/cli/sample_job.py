@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from threading import Event
 from typing import TYPE_CHECKING, Any
 
 from irradia.bake.datasets.options import SampleOptions
@@ -113,17 +114,6 @@ class Tally:
         }
 
 
-@dataclass
-class _Stop:
-    """Whether Ctrl-C was pressed."""
-
-    asked: bool = False
-
-    def ask(self) -> None:
-        """Ends the work after the launch that runs."""
-        self.asked = True
-
-
 def run_sampling(job: SampleJob, progress: Progress) -> dict[str, Any]:
     """Writes the dataset, and before it the one by which a field trained from it is judged.
 
@@ -165,7 +155,7 @@ def write_datasets(
         out: A ``.samples`` or ``.bin``.
         setting: The scene.
         options: Which points.
-        n_validation: How many the second file has; 0 for none.
+        n_validation: How many the second file has; 0 for none, also none that an earlier sampling left.
         origin: The files' provenance.
         progress: Shows the stages "samples for validation" and "samples".
 
@@ -174,18 +164,20 @@ def write_datasets(
     """
     from irradia.formats.samples import validation_path
 
-    stop = _Stop()
+    stopped = Event()
     made: dict[str, Any] = {}
-    with asks_first(stop.ask, progress.say):
+    with asks_first(stopped.set, progress.say):
+        path = validation_path(out.with_suffix(".samples"))
         if n_validation:
-            path = validation_path(out.with_suffix(".samples"))
             better = options.for_validation(n_validation)
-            tally = _write(path, setting, better, _VALIDATION, origin, progress, stop)
+            tally = _write(path, setting, better, _VALIDATION, origin, progress, stopped)
             made["validation"] = tally.to_dict(better.samples)
-        if not stop.asked:
-            tally = _write(out, setting, options, _TRAIN, origin, progress, stop)
+        else:
+            path.unlink(missing_ok=True)  # an earlier one would judge fields of these samples
+        if not stopped.is_set():
+            tally = _write(out, setting, options, _TRAIN, origin, progress, stopped)
             made.update(tally.to_dict(options.samples))
-    return {**made, "complete": not stop.asked}
+    return {**made, "complete": not stopped.is_set()}
 
 
 def open_lit_scene(job: SampleJob, progress: Progress) -> tuple[Scene, BakedPages | None, dict[str, str]]:
@@ -216,7 +208,7 @@ def _write(
     name: str,
     origin: Mapping[str, Any],
     progress: Progress,
-    stop: _Stop,
+    stopped: Event,
 ) -> Tally:
     """One file; ends early where Ctrl-C asks for it."""
     from irradia.bake.datasets.generate import expected_points, sample_info, sample_rows
@@ -234,7 +226,7 @@ def _write(
             writer.append(rows)
             tally.add(rows, info.n_columns - 1 - info.n_values)
             stage.advance(len(rows))
-            if stop.asked:
+            if stopped.is_set():
                 break
         tally.seconds = time.perf_counter() - start
     return tally
@@ -246,7 +238,7 @@ def _streamed(path: Path) -> Iterator[Path]:
     if path.suffix.lower() != ".bin":
         yield path
         return
-    from irradia.formats.samples import open_samples
+    from irradia.formats.samples import open_samples, part_path
     from irradia.formats.samples_bin import write_samples_bin
 
     beside = path.with_name(f"{path.name}.samples")
@@ -254,7 +246,8 @@ def _streamed(path: Path) -> Iterator[Path]:
         yield beside
         write_samples_bin(path, open_samples(beside))
     finally:
-        beside.unlink(missing_ok=True)
+        for left in (beside, part_path(beside)):
+            left.unlink(missing_ok=True)
 
 
 def _origin(job: SampleJob, inputs: dict[str, str]) -> dict[str, Any]:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
+from threading import Event
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,6 +26,7 @@ from irradia.field.training import Figures, Finished, Saved, TrainContext, Valid
 from irradia.field.training.checkpoint import read_step
 from irradia.field.training.curves import write_curves
 from irradia.field.training.log import LogRow, TrainingLog, read_log, write_log
+from irradia.formats.sample_origin import check_same_light
 from irradia.formats.samples import SampleFile, open_samples, part_path, validation_path
 
 if TYPE_CHECKING:
@@ -32,17 +34,6 @@ if TYPE_CHECKING:
     from irradia.field.training.jitter import Visibility
 
 _WAIT_S = 0.5
-
-
-@dataclass
-class _Stop:
-    """Whether Ctrl-C was pressed."""
-
-    asked: bool = False
-
-    def ask(self) -> None:
-        """Ends the training after the step that runs."""
-        self.asked = True
 
 
 def run_training(job: TrainJob, progress: Progress) -> dict[str, Any]:
@@ -117,17 +108,17 @@ def _train(
     job: TrainJob, samples: SampleFile, spec: FieldSpec, backend: Backend, progress: Progress
 ) -> Finished:
     """Follows a training to its end, and writes its log on the way."""
-    stop = _Stop()
+    stopped = Event()
     context = TrainContext(
         validation=_validation(job, samples),
         visible=_visibility(job, progress),
         backend=backend,
         checkpoint=job.checkpoint,
         resume=job.resume,
-        stop=lambda: stop.asked,
+        stop=stopped.is_set,
     )
     log, finished = TrainingLog(_earlier_rows(job)), None
-    for event in shown(train(samples, spec, job.options, context), job.options, progress, stop.ask):
+    for event in shown(train(samples, spec, job.options, context), job.options, progress, stopped.set):
         log.take(event)
         if isinstance(event, (Validated, Saved, Finished)):
             write_log(job.beside(".training.csv"), log.rows)
@@ -140,11 +131,19 @@ def _train(
 
 
 def _validation(job: TrainJob, samples: SampleFile) -> SampleFile | None:
-    """Samples to judge by: those asked for, else those beside the data."""
+    """Samples to judge by: those asked for, else those beside the data, which must be of its box.
+
+    Raises:
+        InputError: They can't be read, or those beside the data were left by another sampling.
+    """
     if job.validation is not None:
         return open_samples(job.validation)
     beside = validation_path(job.data.with_suffix(".samples"))
-    return open_samples(beside) if beside.is_file() and beside != samples.path else None
+    if not beside.is_file() or beside == samples.path:
+        return None
+    found = open_samples(beside)
+    check_same_light(samples.info, found.info, str(beside), same_box=True)
+    return found
 
 
 def _visibility(job: TrainJob, progress: Progress) -> Visibility | None:

@@ -12,6 +12,7 @@ from irradia.field.spec import FieldFrame
 from irradia.field.training.events import Judges, Remark, Working
 from irradia.field.training.figures import judge
 from irradia.field.training.rows import HELD_OUT_SHARE, HeldOut
+from irradia.formats.sample_origin import check_same_light
 from irradia.formats.samples import SampleFile
 
 _CHUNK_ROWS = 1 << 20
@@ -78,3 +79,4 @@ def _check_alike(samples: SampleFile, validation: SampleFile) -> None:
                 f"found {getattr(there, name)}",
                 where=str(validation.path),
             )
+    check_same_light(here, there, str(validation.path))
