@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from irradia.scene.merge import MergedMesh
 from irradia.transport.backend import dr, mi
 from irradia.transport.geometry import Geometry
+from irradia.transport.receivers import columns
 
 F32 = NDArray[np.float32]
 
@@ -22,7 +23,7 @@ class Between:
         """(N,) whether nothing lies between the points of each pair (N, 3), in metres."""
         if not len(start):
             return np.ones(0, np.bool_)
-        origin, way = mi.Point3f(start.T), mi.Vector3f((end - start).T)
+        origin, way = mi.Point3f(*columns(start)), mi.Vector3f(*columns(end - start))
         distance = dr.norm(way)
         apart = distance > 0.0
         direction = way / dr.select(apart, distance, 1.0)

@@ -112,12 +112,32 @@ def test_copies_in_space_fill_a_ball_as_far_as_they_are_seen():
     def left_of_the_middle(start, end):
         return (start[:, 0] < 0.5) == (end[:, 0] < 0.5)
 
-    source, place = drained(jittered_in_space(position, 2, 0.1, SEED, left_of_the_middle))
+    source, place = drained(jittered_in_space(position, None, 2, 0.1, SEED, left_of_the_middle))
     assert np.all((place[:, 0] < 0.5) == (position[source, 0] < 0.5))
     length = np.linalg.norm(place - position[source], axis=1)
     assert length.max() <= 0.1 * (1 + 1e-5)
     inner = np.abs(position[source, 0] - 0.5) > 0.1
     assert np.median(length[inner]) == pytest.approx(0.1 * np.cbrt(0.5), rel=0.03)
+
+
+def test_copies_of_a_volumes_samples_on_a_surface_stay_above_it():
+    """On a tilted plane, where rounding puts samples on either side; others of the volume are free."""
+    normal = np.array([0.36, 0.8, -0.48], np.float32)
+    position = np.random.default_rng(0).random((4000, 3)).astype(np.float32)
+    on_plane = np.arange(4000) < 2000
+    position[on_plane] -= np.outer((position @ normal)[on_plane], normal)
+
+    def on_one_side(start, end):
+        return (start @ normal > 0.0) == (end @ normal > 0.0)
+
+    assert 0.1 < np.mean(position[on_plane] @ normal > 0.0) < 0.9
+    normals = np.tile(normal, (4000, 1))
+    source, place = drained(jittered_in_space(position, normals, 2, 0.1, SEED, on_one_side))
+    height = place @ normal
+    assert np.all(height[on_plane[source]] > -1e-6)
+    assert np.mean(on_plane[source]) > 0.45, "half the ball is enough to find places in"
+    free = ~on_plane[source] & (position[source] @ normal > 0.1)
+    assert np.mean(height[free] < position[source[free]] @ normal) == pytest.approx(0.5, abs=0.05)
 
 
 def test_smoothing_keeps_constants(rooms):

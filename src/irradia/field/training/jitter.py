@@ -12,7 +12,9 @@ and where a wall stands on a floor a dozen of them cover the place at which a co
 wider discs cost a few copies near door posts. With 24 neighbours and halves of d, 5 % slipped through there.
 
 Samples in space say nothing of surfaces, so for them a test by rays has to be given, which may also
-replace the first rule for samples on surfaces.
+replace the first rule for samples on surfaces. Some samples of a volume lie on surfaces too, which no file
+says: where there is something between the points just above and just below one. Rays start above, as from
+the surface itself rounding decides on which side of it they are, and copies stay above.
 """
 
 from __future__ import annotations
@@ -41,6 +43,7 @@ _CHUNK_ROWS = 1 << 13
 _TRIES = 4
 _SAME_FACING = 0.9  # cosine
 _LIFT = 0.01  # of how far a copy may go
+_LIFT_IN_SPACE, _LEAST_LIFT = 1e-3, 1e-5  # of how far a copy may go; of coordinates, for their rounding
 _OFF_PLANE = 0.1  # of how far a copy may go
 _REACH, _RADIUS = 0.3, 0.7  # of the distance of the last neighbour
 
@@ -107,20 +110,36 @@ def jittered_on_surfaces(
 
 
 def jittered_in_space(
-    positions: F32, copies: int, radius_m: float, seed: Seed, visible: Visibility
+    positions: F32, normals: F32 | None, copies: int, radius_m: float, seed: Seed, visible: Visibility
 ) -> Generator[Working, None, tuple[NDArray[np.int64], F32]]:
-    """Copies of samples in free space, within a ball; see :func:`jittered_on_surfaces`."""
+    """Copies of samples in free space, within a ball, and of those on surfaces, within the half above.
+
+    See :func:`jittered_on_surfaces`; samples without normals all lie in free space.
+    """
 
     def trial(chunk: slice) -> _Trial:
-        start = positions[chunk]
+        at = positions[chunk]
+        normal = np.zeros_like(at) if normals is None else normals[chunk]
+        start, on_surface = _above(at, normal, radius_m, visible)
 
         def attempt(row: NDArray[np.int64], rng: np.random.Generator) -> tuple[F32, NDArray[np.bool_]]:
-            place = start[row] + np.multiply(_in_unit_ball(len(row), rng), np.float32(radius_m))
-            return place, visible(start[row], place)
+            way: F32 = np.multiply(_in_unit_ball(len(row), rng), np.float32(radius_m))
+            place = at[row] + way
+            behind = on_surface[row] & (np.einsum("nc,nc->n", way, normal[row]) < 0.0)
+            return place, ~behind & visible(start[row], place)
 
         return attempt
 
     return (yield from _copied(len(positions), copies, seed, trial))
+
+
+def _above(at: F32, normal: F32, radius_m: float, visible: Visibility) -> tuple[F32, NDArray[np.bool_]]:
+    """(n, 3) where rays from samples start, and (n,) whether these lie on surfaces."""
+    height = np.maximum(
+        np.float32(_LIFT_IN_SPACE * radius_m), np.float32(_LEAST_LIFT) * np.abs(at).max(axis=1)
+    )
+    lift: F32 = np.multiply(normal, height[:, None])
+    return at + lift, ~visible(at + lift, at - lift)
 
 
 def _copied(

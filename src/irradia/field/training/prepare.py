@@ -117,11 +117,12 @@ def _jitter(rows: F32, samples: SampleFile, plan: DataPlan) -> Generator[Working
         plan.options.jitter_radius_m,
         plan.seed.child("jitter"),
     )
-    if samples.info.kind == "surface":
-        position, normal = rows[:, :3], rows[:, 3:6]
+    position = rows[:, :3]
+    normal = rows[:, 3:6] if samples.info.has_normals else None
+    if samples.info.kind == "surface" and normal is not None:
         made = jittered_on_surfaces(position, normal, copies, radius_m, seed, plan.visible)
     elif plan.visible is not None:
-        made = jittered_in_space(rows[:, :3], copies, radius_m, seed, plan.visible)
+        made = jittered_in_space(position, normal, copies, radius_m, seed, plan.visible)
     else:
         raise InputError(
             f"{samples.info.kind} samples don't know where walls are, so copies could end up behind them",
