@@ -174,7 +174,10 @@ def _train(
 
     stopped = Event()
     events = train(samples, spec, how, TrainContext(validation, stop=stopped.is_set))
+    finished = None
     for event in shown(events, how, progress, stopped.set):
         if isinstance(event, Finished):
-            return Field(event.spec, event.frame, event.parameters)
-    raise InternalError("a training ended without saying so")
+            finished = event
+    if finished is None:
+        raise InternalError("a training ended without saying so")
+    return Field(finished.spec, finished.frame, finished.parameters)
