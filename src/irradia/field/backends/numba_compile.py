@@ -12,10 +12,16 @@ from numba import njit, types
 from numba.extending import intrinsic as numba_intrinsic
 
 
+def stamped_files() -> list[Path]:
+    """All files that kernels are made of, those too whose constants are compiled into them."""
+    here = Path(__file__).parent
+    defined = [*here.parent.glob("*.py"), *here.parent.glob("encodings/*.py"), *here.glob("numba_*.py")]
+    return sorted([*defined, here.parents[1] / "core" / "colour.py"])
+
+
 def _stamp() -> bytes:
-    """Changes with any of the kernels' files."""
-    files = sorted(Path(__file__).parent.glob("numba_*.py"))
-    return sha256(b"".join(file.read_bytes() for file in files)).digest()
+    """Changes with any of these files."""
+    return sha256(b"".join(file.read_bytes() for file in stamped_files())).digest()
 
 
 _STAMP = _stamp()
@@ -25,7 +31,7 @@ def _compiled(function: Callable, *, nogil: bool) -> Any:
     """Compiles when first called, and keeps the code on disk.
 
     Numba takes that code for fresh as long as the function's own file hasn't changed. Ours holds functions
-    of other files too, so all of them count.
+    and constants of other files too, so all of them count.
     """
     dispatcher: Any = njit(cache=True, nogil=nogil, error_model="numpy")(function)
     dispatcher._cache._cache_file._source_stamp = _STAMP
