@@ -33,6 +33,8 @@ def read_as(data: bytes, how: BinConventions, positions: np.ndarray, normals: np
     normal = normals if how.normal == "signed" else (normals + 1) / 2
     values = features
     if not is_sh:
+        if how.inputs == "normal4_features":
+            normal = np.pad(normal, ((0, 0), (0, 1)))
         values = np.hstack([features, normal] if how.inputs == "features_normal" else [normal, features])
     values = np.pad(values, ((0, 0), (0, content.n_inputs - values.shape[1])))
     for i, (weight, bias) in enumerate(matrices):

@@ -164,6 +164,7 @@ SH_CHOICES = [
 CASES = (
     [(WAVES, "irradiance", choice) for choice in NETWORK_CHOICES + LIT_CHOICES + WAVE_CHOICES]
     + [(PLANES, "irradiance", choice) for choice in PLANE_CHOICES]
+    + [(FULL_GRID, "irradiance", {"inputs": "normal4_features", "normal": n}) for n in ("signed", "unit")]
     + [(FULL_GRID, "irradiance", choice) for choice in GRID_CHOICES]
     + [(PLANES, "sh1", choice) for choice in SH_CHOICES]
 )
@@ -189,6 +190,7 @@ def test_foreign_convention_is_read_as_its_own_reader_would(
         (PLANES, "sh1", {"sh_quantity": "irradiance", "bias": "last"}),
         (FULL_GRID, "irradiance", {"levels": "floor", "hash_all": True, "inputs": "normal_features"}),
         (FULL_GRID, "irradiance", {"primes": "zyx", "table": "feature_entry", "matrix": "in_out"}),
+        (FULL_GRID, "irradiance", {"inputs": "normal4_features", "normal": "unit"}),
     ],
 )
 def test_calibration_finds_conventions_that_explain_the_light(
@@ -231,6 +233,16 @@ def test_files_without_padding_are_read_too(n_outputs: int) -> None:
     found = decode_bin(data)
     assert found.spec.layer_shapes() == [(8, n_inputs), (n_outputs, 8)]
     np.testing.assert_allclose(light(found), read_as(data, BinConventions(), *places()), rtol=1e-4, atol=1e-4)
+
+
+def test_a_normal_of_four_needs_a_fourth_input() -> None:
+    header = BinHeader(1, 3, 0, 2, (0.0, 0.0), 8, 1, BOX)  # 6 features and 3 of a normal, not padded
+    halves = (np.arange(9 * 8 + 8 + 8 * 3 + 3) % 7 / 8).astype(np.float16)
+    data = encode_field_bin(header, np.linspace(0, 1, 54, dtype=np.float16), halves)
+    with pytest.raises(InputError, match="normal4_features"):
+        decode_bin(data, BinConventions(inputs="normal4_features"))
+    found = calibrate(data, *places(), read_as(data, BinConventions(), *places()))
+    assert found.best.error < 1e-4
 
 
 @pytest.mark.parametrize("preset", PRESETS)

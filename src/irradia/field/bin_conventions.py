@@ -15,7 +15,7 @@ from irradia.formats.field_bin import FREQUENCY, HASH, TRI_PLANE
 
 Matrix = Literal["out_in", "in_out"]
 Bias = Literal["after", "before", "last"]
-Inputs = Literal["features_normal", "normal_features"]
+Inputs = Literal["features_normal", "normal_features", "normal4_features"]
 Normal = Literal["signed", "unit"]
 Levels = Literal["tiny-cuda-nn", "floor"]
 Primes = Literal["xyz", "zyx"]
@@ -42,7 +42,7 @@ class BinConventions:
     Attributes:
         matrix: ``out_in`` has a row for each output, ``in_out`` for each input.
         bias: Each after its matrix or before it, or all of them behind all matrices.
-        inputs: Whether the normal follows the features or precedes them.
+        inputs: Whether the normal follows the features or precedes them; ``normal4``: with a zero behind it.
         normal: As it is, or as (n + 1) / 2.
         levels: Resolutions of hash grids; see HashGrid.convention.
         hash_all: Whether levels that would fit their table are hashed nevertheless.

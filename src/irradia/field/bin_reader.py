@@ -11,6 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from irradia.core.errors import InputError
 from irradia.core.sh import BAND, COSINE_LOBE
 from irradia.field.backend import Parameters
 from irradia.field.bin_conventions import BinConventions
@@ -24,6 +25,7 @@ from irradia.formats.field_bin import FREQUENCY, HASH, TRI_PLANE, BinField, deco
 F32 = NDArray[np.float32]
 Layer = tuple[F32, F32]  # weight (out, in) and bias (out,)
 
+_BEFORE_FEATURES = {"features_normal": 0, "normal_features": 3, "normal4_features": 4}
 _OUR_PLANES = ("xy", "xz", "yz")
 CHANNEL_FROM_OURS = [
     0,
@@ -50,9 +52,16 @@ def decode_bin(data: bytes, conventions: BinConventions | None = None, where: st
         where: The file, for errors.
 
     Raises:
-        InputError: It is damaged, or no such field.
+        InputError: It is damaged, no such field, or has too few inputs for the conventions.
     """
-    return to_field(decode_field_bin(data, where), conventions or BinConventions())
+    content, conventions = decode_field_bin(data, where), conventions or BinConventions()
+    if not fits(content, conventions):
+        raise InputError(
+            f"its {content.n_inputs} inputs can't be inputs={conventions.inputs}",
+            where=where,
+            fix="Choose another order of inputs.",
+        )
+    return to_field(content, conventions)
 
 
 def to_field(content: BinField, conventions: BinConventions) -> Field:
@@ -114,6 +123,14 @@ def encoding_of(content: BinField, conventions: BinConventions) -> tuple[Encodin
         return planes, _our_planes(values, planes, conventions)
     n_frequencies = header.a + (conventions.turns == "two_pi")
     return Frequency(n_frequencies, include_identity=bool(header.c)), values
+
+
+def fits(content: BinField, conventions: BinConventions) -> bool:
+    """Whether the perceptron has as many inputs as these conventions need."""
+    if content.n_outputs > 4:
+        return True
+    n_before = _BEFORE_FEATURES[conventions.inputs]
+    return content.n_inputs >= content.header.n_features + max(n_before, 3)
 
 
 def network_of(content: BinField, conventions: BinConventions) -> Parameters:
@@ -183,10 +200,9 @@ def _our_inputs(weight: F32, bias: F32, content: BinField, conventions: BinConve
     n = content.header.n_features
     if content.n_outputs > 4:
         return _our_features(weight[:, :n], content, conventions), bias
-    if conventions.inputs == "features_normal":
-        features, normal = weight[:, :n], weight[:, n : n + 3]
-    else:
-        normal, features = weight[:, :3], weight[:, 3 : n + 3]
+    first = _BEFORE_FEATURES[conventions.inputs]
+    features = weight[:, first : first + n]
+    normal = weight[:, :3] if first else weight[:, n : n + 3]
     if conventions.normal == "unit":  # W (n + 1) / 2 + b
         normal = normal * np.float32(0.5)
         bias = bias + normal.sum(axis=1)

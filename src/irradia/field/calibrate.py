@@ -12,7 +12,7 @@ from irradia.core.progress import Progress, silent_progress
 from irradia.core.sh import irradiance_weights
 from irradia.field import mlp
 from irradia.field.bin_conventions import BinConventions, all_conventions
-from irradia.field.bin_reader import encoding_of, frame_of, network_of, spec_of, to_field
+from irradia.field.bin_reader import encoding_of, fits, frame_of, network_of, spec_of, to_field
 from irradia.field.field import Field
 from irradia.field.spec import FieldSpec
 from irradia.formats.field_bin import BinField, decode_field_bin
@@ -95,7 +95,7 @@ def calibrate(
     with (progress or silent_progress()).stage("calibrate", sum(len(g) for _, g in groups), "") as stage:
         for of_encoding, choices in groups:
             spec, features = spec_of(content, of_encoding), _features(content, of_encoding, positions)
-            for choice in choices:
+            for choice in (each for each in choices if fits(content, each)):
                 predicted = _irradiance(content, spec, choice, features, normals)
                 found.append(Candidate(choice, _error(predicted, irradiance)))
             stage.advance(len(choices))
