@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import struct
+import zipfile
 from dataclasses import replace
 from xml.etree import ElementTree as ET
 
@@ -10,6 +12,9 @@ import pytest
 
 from irradia.core.errors import InputError
 from irradia.field.backend import TrainState
+from irradia.field.backends import backend as find_backend
+from irradia.field.encodings import Frequency, Identity
+from irradia.field.spec import FieldSpec
 from irradia.field.training import Figures, Stepped, SteppedBack, TrainOptions, Validated
 from irradia.field.training.checkpoint import (
     Checkpoint,
@@ -22,6 +27,7 @@ from irradia.field.training.checkpoint import (
 from irradia.field.training.curves import write_curves
 from irradia.field.training.log import COLUMNS, LogRow, TrainingLog, read_log, write_log
 
+SPEC = FieldSpec(Frequency(2), Identity(), width=8, n_hidden_layers=1)
 FIGURES = Figures(10, 30.5, 0.01, 1.02, 0.3, None, under_noise=False)
 
 
@@ -79,6 +85,52 @@ def test_other_files_are_refused(tmp_path, content):
         load_checkpoint(tmp_path / "c.npz")
 
 
+def spoil_packing(path):
+    """Deflated, with nonsense where the first bytes were."""
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("header.npy", bytes(9999))
+    data = bytearray(path.read_bytes())
+    data[40:50] = b"\xff" * 10
+    path.write_bytes(data)
+
+
+def ask_for_all_memory(path):
+    with zipfile.ZipFile(path, "w") as archive:
+        text = "{'descr': '<f4', 'fortran_order': False, 'shape': (1152921504606846, ), }"
+        archive.writestr("header.npy", b"\x93NUMPY\x01\x00" + struct.pack("<H", len(text)) + text.encode())
+
+
+def pack_in_an_unknown_way(path):
+    data = bytearray(path.read_bytes())
+    at = data.index(b"PK\x01\x02")
+    while at >= 0:
+        data[at + 10 : at + 12] = struct.pack("<H", 99)
+        at = data.find(b"PK\x01\x02", at + 1)
+    path.write_bytes(data)
+
+
+@pytest.mark.parametrize("damage", [spoil_packing, ask_for_all_memory, pack_in_an_unknown_way])
+def test_whatever_reading_nonsense_raises_is_damage(checkpoint, tmp_path, damage):
+    path = tmp_path / "c.npz"
+    save_checkpoint(path, checkpoint)
+    damage(path)
+    with pytest.raises(InputError, match="damaged"):
+        load_checkpoint(path)
+
+
+@pytest.mark.parametrize("group", ["parameters", "average", "first", "second", "best"])
+def test_arrays_of_other_shapes_are_damage(finished, samples, tmp_path, group):
+    options, path = TrainOptions(steps=20, batch_size=64, validate_every=4, early_stop=9), tmp_path / "c.npz"
+    taken = []
+    finished(samples, options, checkpoint=path, stop=lambda: len(taken) >= 5 or taken.append(1))
+    found = load_checkpoint(path)
+    arrays = found.best if group == "best" else getattr(found.state, group)
+    arrays["mlp.0.weight"] = arrays["mlp.0.weight"][:-1]
+    save_checkpoint(path, found)
+    with pytest.raises(InputError, match=r"damaged: mlp\.0\.weight: expected shape"):
+        finished(samples, options, checkpoint=path, resume=True)
+
+
 def test_without_a_checkpoint_nothing_can_be_resumed(tmp_path):
     with pytest.raises(InputError, match="no stopped training"):
         load_checkpoint(tmp_path / "none.npz")
@@ -107,6 +159,16 @@ def test_a_training_with_other_options_does_not_go_on(finished, samples, tmp_pat
     finished(samples, options, checkpoint=tmp_path / "c.npz", stop=stop)
     with pytest.raises(InputError, match=f"another options.{next(iter(other))}"):
         finished(samples, replace(options, **other), checkpoint=tmp_path / "c.npz", resume=True)
+
+
+@pytest.mark.parametrize("what", ["backend", "scene", "validation"])
+def test_a_training_in_other_surroundings_does_not_go_on(finished, samples, make, tmp_path, what):
+    other = {"backend": find_backend("numba", SPEC), "scene": "other.glb", "validation": make(50)}[what]
+    options, taken = TrainOptions(steps=20, batch_size=64), []
+    stop = lambda: len(taken) >= 5 or taken.append(1)  # noqa: E731
+    finished(samples, options, checkpoint=tmp_path / "c.npz", stop=stop)
+    with pytest.raises(InputError, match=f"another {what}"):
+        finished(samples, options, checkpoint=tmp_path / "c.npz", resume=True, **{what: other})
 
 
 def test_a_training_on_other_samples_does_not_go_on(finished, samples, make, tmp_path):
@@ -145,6 +207,17 @@ def test_a_setback_takes_rows_back():
     assert log.rows[-1].step <= 50
     log.take(stepped(200, 1.0))
     assert log.rows[-1].rate_factor == 0.5
+
+
+@pytest.mark.parametrize("to_step", [0, 50])
+def test_a_validation_right_after_a_setback_changes_no_row(to_step):
+    log = TrainingLog()
+    for step in range(1, 101):
+        log.take(stepped(step, 1.0))
+    log.take(SteppedBack(100, to_step, 0.5))
+    before = list(log.rows)
+    log.take(Validated(to_step, FIGURES))
+    assert log.rows == before
 
 
 def test_a_log_comes_back_from_its_csv(tmp_path):

@@ -72,6 +72,37 @@ def test_training_waits_for_the_first_batch(writer, samples, spec, tmp_path):
     assert waited == [10.0, 110.0, 210.0]
 
 
+def test_rows_that_come_while_one_asks_for_the_writer_count(writer, samples, finished, tmp_path, monkeypatch):
+    writer.append(samples.rows[:10])
+
+    def ends(_):
+        writer.append(samples.rows[10:])
+        writer.close()
+        return False
+
+    monkeypatch.setattr(growth, "grows", ends)
+    last = finished(open_samples(tmp_path / "box.samples"), TrainOptions(steps=5, batch_size=256))
+    assert last.n_samples > 550
+
+
+def test_training_goes_on_with_what_it_has_when_its_samples_are_replaced(samples, spec, tmp_path):
+    path, told = tmp_path / "box.samples", []
+    writer = SampleWriter(path, samples.info)
+    writer.append(samples.rows[:200])
+    options = TrainOptions(steps=20, batch_size=64)
+    for event in train(open_samples(path), spec, options, TrainContext(backend="numpy")):
+        told.append(event)
+        if isinstance(event, Stepped) and event.step == 5:
+            writer.abandon()
+            writer = SampleWriter(path, samples.info)  # begins anew
+            writer.append(samples.rows[:9])
+    writer.abandon()
+    assert isinstance(told[-1], Finished)
+    assert told[-1].step == 20
+    remarks = [event.text for event in told if isinstance(event, Remark)]
+    assert sum("taken the place" in text for text in remarks) == 1
+
+
 def test_a_dataset_that_was_given_up_is_trained_on_as_it_is(samples, finished, tmp_path):
     writer = SampleWriter(tmp_path / "box.samples", samples.info)
     writer.append(samples.rows[:200])

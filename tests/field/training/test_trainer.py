@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -26,6 +25,7 @@ from irradia.field.training import (
     Validated,
     train,
 )
+from irradia.field.training import run as course
 from irradia.field.training.checkpoint import load_checkpoint
 
 OPTIONS = TrainOptions(steps=40, batch_size=64, validate_every=10, lr_network=0.01)
@@ -88,16 +88,40 @@ def test_a_killed_training_goes_on_from_its_last_checkpoint(finished, spec, samp
     assert same(resumed.parameters, finished(samples, options).parameters)
 
 
-def test_time_spent_before_an_interruption_counts(run, samples, tmp_path):
-    options = TrainOptions(steps=None, time_s=0.4, batch_size=64)
-    path, taken = tmp_path / "stopped.npz", []
-    stop = lambda: len(taken) >= 50 or taken.append(time.sleep(0.004))  # noqa: E731
-    stopped = run(samples, options, checkpoint=path, stop=stop)[-1]
-    resumed = run(samples, options, checkpoint=path, resume=True)
+class Clock:
+    """Stands still but when it is told."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def perf_counter(self) -> float:
+        return self.now
+
+    def a_step(self, rates, loss):
+        """Takes a hundredth of a second, for :class:`Watched`."""
+        self.now += 0.01
+        return loss
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    """That of trainings, under which none depends on how busy the machine is."""
+    made = Clock()
+    monkeypatch.setattr(course, "time", made)
+    return made
+
+
+def test_time_spent_before_an_interruption_counts(run, samples, tmp_path, clock):
+    options = TrainOptions(steps=None, time_s=0.395, batch_size=64)
+    surroundings = {"checkpoint": tmp_path / "stopped.npz", "backend": Watched(clock.a_step)}
+    taken = []
+    stopped = run(samples, options, stop=lambda: len(taken) >= 25 or taken.append(1), **surroundings)[-1]
+    clock.now += 100.0
+    resumed = run(samples, options, resume=True, **surroundings)
     first, last = next(event for event in resumed if isinstance(event, Stepped)), resumed[-1]
-    assert stopped.spent_s > 0.2
-    assert first.spent_s > 0.2
-    assert (first.step, last.why) == (51, "time")
+    assert stopped.spent_s == pytest.approx(0.25)
+    assert first.spent_s == pytest.approx(0.26)
+    assert (first.step, last.step, last.why) == (26, 40, "time")
 
 
 def test_stopping_is_no_validation(run, samples, tmp_path):
@@ -110,14 +134,14 @@ def test_stopping_is_no_validation(run, samples, tmp_path):
     assert (course.best_relmse, course.n_worse) == (judged[0].figures.relmse, 0)
 
 
-def test_a_time_budget_brings_the_rates_to_their_end(samples, spec):
+def test_a_time_budget_brings_the_rates_to_their_end(run, samples, clock):
     seen: list[Rates] = []
-    backend = Watched(lambda rates, loss: (seen.append(rates), loss)[1])
-    options = TrainOptions(steps=None, time_s=0.2, batch_size=64, lr_final=0.01)
-    events = list(train(samples, spec, options, TrainContext(backend=backend)))
-    assert events[-1].why == "time"
-    assert seen[-1].network < 0.05 * seen[1].network
-    assert sum(isinstance(event, Validated) for event in events) >= 5
+    backend = Watched(lambda rates, loss: (seen.append(rates), clock.a_step(rates, loss))[1])
+    options = TrainOptions(steps=None, time_s=1.995, batch_size=64, lr_final=0.01)
+    events = run(samples, options, backend=backend)
+    assert (events[-1].why, events[-1].step) == ("time", 200)
+    assert seen[-1].network == pytest.approx(0.01 * seen[1].network, rel=0.05)
+    assert sum(isinstance(event, Validated) for event in events) == 20
 
 
 class Watched(NumpyBackend):
@@ -166,6 +190,12 @@ def test_a_loss_that_is_no_number_steps_back_and_halves_the_rates(run, samples):
     assert fault.rates[26].network == 0.005
     assert (events[-1].why, events[-1].step, events[-1].n_setbacks) == ("steps", 40, 1)
     assert all(np.isfinite(values).all() for values in events[-1].parameters.values())
+
+
+def test_a_setback_goes_back_to_the_last_validation_however_often_one_saves(run, samples, tmp_path):
+    options = replace(OPTIONS, checkpoint_s=1e-9)
+    events = run(samples, options, backend=Watched(FailsAt(25)), checkpoint=tmp_path / "c.npz")
+    assert [event.to_step for event in events if isinstance(event, SteppedBack)] == [20]
 
 
 def test_after_a_setback_other_batches_are_drawn(run, samples):

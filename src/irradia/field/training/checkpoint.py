@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import zipfile
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
@@ -19,10 +20,17 @@ import numpy as np
 from irradia.core.errors import InputError
 from irradia.core.files import write_atomic
 from irradia.field.backend import Parameters, TrainState
+from irradia.field.checks import check_parameters
+from irradia.field.spec import FieldSpec
 
 VERSION = 1
-_GROWS = ("data.rows", "data.sha256")
+_GROWS = ("rows", "sha256")
 _GROUPS = ("parameters", "average", "first", "second")
+# What reading a file of nonsense may raise: lengths beyond memory and unknown kinds of packing among it.
+_DAMAGE = (
+    *(ValueError, KeyError, TypeError, AttributeError, EOFError, MemoryError, NotImplementedError),
+    *(zipfile.BadZipFile, zlib.error),
+)
 
 
 @dataclass(frozen=True)
@@ -119,10 +127,12 @@ def _opened(path: Path) -> Iterator[Any]:
         raise InputError(
             "there is no stopped training here", where=str(path), fix="Train without --resume."
         ) from error
-    except (ValueError, KeyError, TypeError, AttributeError, EOFError, zipfile.BadZipFile) as error:
-        raise InputError(
-            f"this checkpoint is damaged: {error}", where=str(path), fix="Train without --resume."
-        ) from error
+    except _DAMAGE as error:
+        raise _damaged(path, str(error)) from error
+
+
+def _damaged(path: Path | str, how: str) -> InputError:
+    return InputError(f"this checkpoint is damaged: {how}", where=str(path), fix="Train without --resume.")
 
 
 def _header(stored: Any, path: Path) -> dict[str, Any]:
@@ -139,11 +149,10 @@ def check_same(checkpoint: Checkpoint, identity: dict[str, Any], where: Path | s
         InputError: Names what differs.
     """
     before, now = _flat(checkpoint.identity), _flat(json.loads(json.dumps(identity)))
-    growing = before.get("data.rows") is None  # what has come since is welcome
     differ = sorted(
         name
         for name in before.keys() | now.keys()
-        if before.get(name) != now.get(name) and not (growing and name in _GROWS)
+        if before.get(name) != now.get(name) and not _may_grow(name, before)
     )
     if differ:
         name = differ[0]
@@ -154,9 +163,32 @@ def check_same(checkpoint: Checkpoint, identity: dict[str, Any], where: Path | s
         )
 
 
+def check_state(checkpoint: Checkpoint, spec: FieldSpec, where: Path | str, *, averaged: bool) -> None:
+    """Refuses arrays that are not a training's of this spec: compiled steps take their shapes on trust.
+
+    Raises:
+        InputError: One is missing, of another shape, or has values that are no numbers.
+    """
+    state = checkpoint.state
+    groups = [state.parameters, state.first, state.second]
+    groups += [state.average] if averaged else []
+    groups += [checkpoint.best] if checkpoint.best else []
+    for group in groups:
+        try:
+            check_parameters(spec, group)
+        except InputError as error:
+            raise _damaged(where, str(error)) from error
+
+
 def _group(arrays: dict[str, Any], group: str) -> Parameters:
     prefix = f"{group}/"
     return {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}
+
+
+def _may_grow(name: str, before: dict[str, Any]) -> bool:
+    """Whether something tells how far a dataset had grown; what has come since is welcome."""
+    dataset, _, what = name.rpartition(".")
+    return what in _GROWS and before.get(f"{dataset}.rows") is None
 
 
 def _flat(value: Any, path: str = "") -> dict[str, Any]:

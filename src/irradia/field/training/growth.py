@@ -29,6 +29,7 @@ def wait_for_rows(samples: SampleFile, wanted: int) -> Generator[Working, None, 
         yield Working("Wait for samples", len(samples), wanted, "rows")
         time.sleep(_WAIT_S)
         samples = samples.grown()
+    samples = samples.grown()  # whoever wrote may have ended between the look at the rows and that at him
     if not len(samples):
         raise InputError(
             "expected samples, found none, and nobody writes any",
@@ -41,6 +42,14 @@ def wait_for_rows(samples: SampleFile, wanted: int) -> Generator[Working, None, 
 def grows(samples: SampleFile) -> bool:
     """Whether a process still writes it."""
     return not samples.finished and is_being_written(samples.path.with_suffix(""))
+
+
+def latest(samples: SampleFile) -> SampleFile:
+    """With the rows that have come since; as it was where the file has gone, whose rows stay readable."""
+    try:
+        return samples.grown()
+    except (InputError, OSError):
+        return samples
 
 
 class Growth:
@@ -56,6 +65,7 @@ class Growth:
         self.samples, self.source = samples, source
         self._plan = plan
         self._looked = time.monotonic()
+        self._has_gone = False
 
     def follow(self) -> Generator[Remark, None, None]:
         """Takes in what has come, where that is worth it.
@@ -64,10 +74,16 @@ class Growth:
             A remark about it.
         """
         now = time.monotonic()
-        if self.samples.finished or now - self._looked < LOOK_EVERY_S:
+        if self.samples.finished or self._has_gone or now - self._looked < LOOK_EVERY_S:
             return
         self._looked = now
-        grown = self.samples.grown()
+        try:
+            grown = self.samples.grown()
+        except (InputError, OSError) as error:  # what has been read stays readable
+            self._has_gone = True
+            why = str(error).splitlines()[0]
+            yield Remark(f"No more samples can be read; training goes on with {len(self.samples):,}: {why}.")
+            return
         if not grown.finished and len(grown) < FACTOR * len(self.samples):
             return
         self.samples = grown

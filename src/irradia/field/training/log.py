@@ -70,6 +70,7 @@ class TrainingLog:
         elif isinstance(event, SteppedBack):
             self.rows = [row for row in self.rows if row.step <= event.to_step]
             self._losses, self._rate_factor = [], event.rate_factor
+            self._last = None  # its row is gone, and the state gone back to has been judged
 
     def _add(self, figures: Figures | None = None) -> None:
         last = self._last

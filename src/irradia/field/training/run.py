@@ -155,7 +155,7 @@ class Run:
                 yield self._step_back()
                 return
             yield Validated(self._step, figures)
-        self._good = state
+            self._good = state  # not where it is only saved: the clock says when that is
         if save is not None:
             yield self._save(save, state)
 

@@ -17,7 +17,7 @@ from irradia.field.checks import check_options
 from irradia.field.registry import spec_to_dict
 from irradia.field.spec import FieldFrame, FieldSpec
 from irradia.field.training.batches import BatchSource
-from irradia.field.training.checkpoint import check_same, load_checkpoint
+from irradia.field.training.checkpoint import check_same, check_state, load_checkpoint
 from irradia.field.training.events import TrainEvent, Working
 from irradia.field.training.growth import Growth, wait_for_rows
 from irradia.field.training.jitter import Visibility
@@ -42,6 +42,7 @@ class TrainContext:
         validation: Samples made for validation; without, 2 % of the rows are held out.
         start: Parameters trained before.
         visible: Test by rays for jitter; see :mod:`irradia.field.training.jitter`.
+        scene: Name of the scene that these rays meet.
         backend: What computes it, or its name; see :func:`irradia.field.backends.backend`.
         checkpoint: File for checkpoints.
         resume: Go on from it.
@@ -51,6 +52,7 @@ class TrainContext:
     validation: SampleFile | None = None
     start: Parameters | None = None
     visible: Visibility | None = None
+    scene: str | None = None
     backend: Backend | str = "auto"
     checkpoint: Path | None = None
     resume: bool = False
@@ -87,9 +89,10 @@ def train(
     if isinstance(computing, str):
         computing = find_backend(computing, spec)
     resumed = load_checkpoint(context.checkpoint) if context.resume and context.checkpoint else None
-    identity = _identity(samples, spec, options)
+    identity = _identity(samples, spec, options, context, computing)
     if resumed is not None:
         check_same(resumed, identity, context.checkpoint or "")
+        check_state(resumed, spec, context.checkpoint or "", averaged=options.average > 0.0)
     samples = yield from wait_for_rows(samples, options.batch_size)
     frame = frame_of(samples)
     if resumed is not None:
@@ -137,9 +140,18 @@ def _warm_up(
     backend.evaluator(spec, state.parameters)(batch.x, batch.normal)
 
 
-def _identity(samples: SampleFile, spec: FieldSpec, options: TrainOptions) -> dict[str, Any]:
+def _identity(
+    samples: SampleFile, spec: FieldSpec, options: TrainOptions, context: TrainContext, computing: Backend
+) -> dict[str, Any]:
     """What must be the same for a stopped training to go on."""
-    return {"spec": spec_to_dict(spec), "options": options.identity(), "data": _fingerprint(samples)}
+    return {
+        "spec": spec_to_dict(spec),
+        "options": options.identity(),
+        "backend": computing.name,
+        "scene": context.scene,
+        "data": _fingerprint(samples),
+        "validation": None if context.validation is None else _fingerprint(context.validation),
+    }
 
 
 def _fingerprint(samples: SampleFile) -> dict[str, Any]:
