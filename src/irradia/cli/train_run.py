@@ -25,6 +25,7 @@ from irradia.field.spec import FieldFrame, FieldSpec
 from irradia.field.training import Figures, Finished, Saved, TrainContext, Validated, train
 from irradia.field.training.checkpoint import read_step
 from irradia.field.training.curves import write_curves
+from irradia.field.training.growth import latest
 from irradia.field.training.log import LogRow, TrainingLog, read_log, write_log
 from irradia.formats.sample_origin import check_same_light
 from irradia.formats.samples import SampleFile, open_samples, part_path, validation_path
@@ -50,9 +51,10 @@ def run_training(job: TrainJob, progress: Progress) -> dict[str, Any]:
     spec = job.choices.spec(samples.info)
     check_can_save(job, spec)
     backend = find_backend(job.backend, spec, job.threads)
-    finished = _train(job, samples, spec, backend, progress)
-    samples = samples.grown()
-    made = _made(job, finished, samples, backend, progress)
+    validation = _validation(job, samples)
+    finished = _train(job, samples, validation, spec, backend, progress)
+    samples = latest(samples)
+    made = _made(job, finished, samples, validation, backend, progress)
     n_bytes = save_field(job.out, made, _about(job, samples, finished, progress), precision=job.precision)
     if finished.why == "stopped":
         progress.say("Stopped early; the field is usable. The same command with --resume goes on.")
@@ -105,13 +107,19 @@ def check_can_save(job: TrainJob, spec: FieldSpec) -> None:
 
 
 def _train(
-    job: TrainJob, samples: SampleFile, spec: FieldSpec, backend: Backend, progress: Progress
+    job: TrainJob,
+    samples: SampleFile,
+    validation: SampleFile | None,
+    spec: FieldSpec,
+    backend: Backend,
+    progress: Progress,
 ) -> Finished:
     """Follows a training to its end, and writes its log on the way."""
     stopped = Event()
     context = TrainContext(
-        validation=_validation(job, samples),
+        validation=validation,
         visible=_visibility(job, progress),
+        scene=job.jitter_scene if job.options.data.jitter_copies else None,
         backend=backend,
         checkpoint=job.checkpoint,
         resume=job.resume,
@@ -163,7 +171,12 @@ def _earlier_rows(job: TrainJob) -> list[LogRow]:
 
 
 def _made(
-    job: TrainJob, finished: Finished, samples: SampleFile, backend: Backend, progress: Progress
+    job: TrainJob,
+    finished: Finished,
+    samples: SampleFile,
+    validation: SampleFile | None,
+    backend: Backend,
+    progress: Progress,
 ) -> Field | QuantisedField:
     """What goes into the file."""
     trained = Field(finished.spec, finished.frame, finished.parameters)
@@ -174,12 +187,16 @@ def _made(
     from irradia.field.training.rows import held_out
 
     options = job.options
+    if options.data.smooth_k or options.data.jitter_copies:
+        progress.say(
+            f"note: --finish {job.finish} learns from the samples as they are, neither smoothed nor copied."
+        )
     finishing = FinishOptions(batch_size=options.batch_size, loss=options.loss, seed=options.seed)
     bits = 8 if job.finish == "int8" else 4
     kept_back = held_out(
         samples,
         Seed(options.seed),
-        rows=_validation(job, samples) is None,
+        rows=validation is None,
         blocks=options.data.hold_out_blocks,
     )
     return finish_in_bits(
@@ -189,13 +206,22 @@ def _made(
 
 def _about(job: TrainJob, samples: SampleFile, finished: Finished, progress: Progress) -> dict[str, Any]:
     """The field's provenance: nothing that differs between runs that give the same field."""
-    with progress.stage("Hash samples"):
-        inputs = {job.data.name: provenance.sha256_file(samples.path)}
+    inputs = _hashes(job, samples, progress)
     made = provenance.record(
         "train", job.config(), seed=job.options.seed, inputs=inputs, device=None, wall_s=0.0
     )
     result = {"steps": finished.step, "loss": finished.loss, "validation": finished.figures.to_json()}
     return {**made.reproducible(), "training": result, "samples": dict(samples.info.provenance)}
+
+
+def _hashes(job: TrainJob, samples: SampleFile, progress: Progress) -> dict[str, str]:
+    """SHA-256 of the samples; none where they have gone meanwhile, which must not cost the field."""
+    with progress.stage("Hash samples"):
+        try:
+            return {job.data.name: provenance.sha256_file(samples.grown().path)}
+        except (InputError, OSError):
+            progress.say(f"note: {job.data} has gone, so the field doesn't hold its hash.")
+            return {}
 
 
 def _shipped(job: TrainJob, finished: Finished, progress: Progress) -> Figures:
