@@ -27,6 +27,7 @@ BASELINES = "sh1,sh2,visibility,lightmap"  # beside the hash grids, in as many b
 SH_MODE = FieldSpec(HashGrid(8, 17, 2, 16, 512), None, 32, 2, mode="sh1", head="linear")
 """As one row of the Unity project's table, which names the same architecture."""
 INDIRECT = ("--quantity", "indirect")  # the sun and lamps are drawn live, as engines do
+BLOCK = 16  # values to a scale of 4 bits; one scale for a whole level costs twice as much FLIP
 N_PIXELS = 512 * 288
 
 
@@ -161,7 +162,8 @@ class Bench:
 
 def _round(trained: Path, weights: Path, bits: Bits | None, data: Path, batch_size: int) -> None:
     """Writes a trained field with its tables in so many bits, or as halves after as many steps more."""
-    field, samples, options = load_field(trained), open_samples(data), FinishOptions(batch_size=batch_size)
+    field, samples = load_field(trained), open_samples(data)
+    options = FinishOptions(block=BLOCK if bits == 4 else 0, batch_size=batch_size)
     save_field(weights, finish(field, bits, samples, options) if bits else train_on(field, samples, options))
 
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 FILE = "field.safetensors.zst"
 _VALIDATION_POINTS = 4096
-_SPACE = SpaceOptions(count=2048, rays=256)
+_SPACE = SpaceOptions(count=1024, rays=256)
 
 
 @dataclass(frozen=True)
