@@ -9,16 +9,23 @@ import signal
 import subprocess
 import sys
 import time
-from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from irradia.cli import app
 from irradia.cli.sweep_grid import BUILT_IN, SweepRun, expand, read_grid, run_name
-from irradia.cli.sweep_runs import SweepJob, command_line
+from irradia.cli.sweep_job import _formula_cost, describe
+from irradia.cli.sweep_runs import SweepJob, command_line, finished
 from irradia.cli.sweep_table import make_row, write_tables
 from irradia.core.errors import InputError
+from irradia.core.rng import Seed
+from irradia.field.encodings import Identity, TriPlane
+from irradia.field.field import Field
+from irradia.field.files import save_field
+from irradia.field.init import new_parameters
+from irradia.field.quantise import round_tables
+from irradia.field.spec import FieldFrame, FieldSpec
 from irradia.formats.samples import SampleInfo, SampleWriter
 
 BOX = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
@@ -85,7 +92,7 @@ def test_a_grids_own_values_are_stronger_than_common_ones_and_the_command_lines_
 
 def test_flags_are_given_or_left_out():
     run = SweepRun("x", {"include-identity": True, "sh-mode": False, "time": 2.5})
-    assert run.arguments == ["--include-identity", "--time", "2.5"]
+    assert run.arguments == ["--include-identity", "--time=2.5"]
 
 
 def test_a_run_with_a_checkpoint_goes_on(tmp_path):
@@ -94,8 +101,8 @@ def test_a_run_with_a_checkpoint_goes_on(tmp_path):
     assert "--resume" not in command_line(job, run)
     (job.folder(run) / "field.checkpoint.npz").touch()
     assert "--resume" in command_line(job, run)
-    seeds = [word for before, word in pairwise(command_line(job, run)) if before == "--seed"]
-    assert seeds == ["3", "4"], "the last counts: the grid's own"
+    seeds = [word for word in command_line(job, run) if word.startswith("--seed")]
+    assert seeds == ["--seed=3", "--seed=4"], "the last counts: the grid's own"
 
 
 def test_a_name_tells_what_has_no_short_form():
@@ -164,11 +171,89 @@ def test_parquet_holds_what_the_csv_holds(tmp_path):
 
 
 def test_a_run_that_fails_is_told_and_the_others_go_on(sweep, data, grid, tmp_path):
-    content = {"common": COMMON, "grids": [{"encoding": "frequency", "head": ["exp", "nothing"]}]}
+    content = {
+        "common": COMMON,
+        "grids": [{"encoding": "frequency", "loss": "log", "head": ["exp", "linear"]}],
+    }
     code, said = sweep(data, "-o", tmp_path / "out", "--grid", grid(content))
     assert code == 2
     assert [row["status"] for row in said["rows"]] == ["done", "failed"]
-    assert "nothing" in said["failed"][0]["error"]
+    assert "above zero" in said["failed"][0]["error"]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "complaint"),
+    [
+        ({"head": ["exp", "nothing"]}, "nothing"),
+        ({"steps": 0}, "expected 1 to"),
+        ({"lr-final": 2}, "up to 1"),
+        ({"include-identity": "-oelsewhere"}, "--include-identity"),
+        ({"n-levels": True}, "--n-levels"),
+    ],
+)
+def test_a_bad_value_is_told_before_anything_is_trained(sweep, data, grid, tmp_path, wrong, complaint):
+    content = {"common": COMMON, "grids": [{"encoding": "frequency", **wrong}]}
+    code, said = sweep(data, "-o", tmp_path / "out", "--grid", grid(content))
+    assert code == 2
+    assert complaint in said["error"]["message"]
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("name", ["..", ".", "-x", ""])
+def test_no_run_is_named_so_that_it_would_be_another_folder(name):
+    with pytest.raises(InputError, match="name of a run"):
+        expand({"grids": [{"encoding": name}]}, {}, "g")
+
+
+@pytest.fixture
+def ended(tmp_path):
+    """A run that left a result, with a field or without; gives what counts of it."""
+
+    def leave(result, *, field=False):
+        job, run = SweepJob(tmp_path / "d", "", tmp_path, seed=3, threads=1), SweepRun("x", {"steps": 4})
+        job.folder(run).mkdir(parents=True)
+        (job.folder(run) / "request.json").write_text(json.dumps(job.request(run)))
+        (job.folder(run) / "result.json").write_text(json.dumps(result))
+        if field:
+            job.field(run).touch()
+        return finished(job, run)
+
+    return leave
+
+
+@pytest.mark.parametrize("code", [-9, 1, 130, 137])
+def test_a_run_that_was_killed_is_tried_again(ended, code):
+    assert ended({"ok": False, "exit_code": code}) is None
+
+
+def test_a_run_with_wrong_options_has_failed_for_good(ended):
+    assert ended({"ok": False, "exit_code": 2, "error": "no"})["error"] == "no"
+
+
+@pytest.mark.parametrize("field", [True, False])
+def test_a_run_whose_field_has_gone_is_tried_again(ended, field):
+    assert (ended({"ok": True}, field=field) is not None) == field
+
+
+def test_runs_whose_error_is_no_number_are_told_last():
+    rows = [
+        {"name": name, "status": "done", "bytes": 10, "relmse": relmse}
+        for name, relmse in (("broken", None), ("good", 0.5))
+    ]
+    told = describe({"rows": rows, "n_runs": 2, "out": "x", "failed": [], "complete": True}).splitlines()
+    assert "relMSE 5.000e-01" in told[1]
+    assert "relMSE –" in told[2]
+
+
+def test_bytes_of_a_query_are_those_of_the_file(tmp_path):
+    spec = FieldSpec(TriPlane(8, 4), Identity(), width=8, n_hidden_layers=1)
+    made = Field(spec, FieldFrame(np.array(BOX, np.float32)), new_parameters(spec, Seed(0)))
+    save_field(tmp_path / "halves.safetensors", made)
+    save_field(tmp_path / "codes.safetensors", round_tables(made, 8))
+    halves, codes = (
+        _formula_cost(tmp_path / f"{name}.safetensors")["encoding_bytes"] for name in ("halves", "codes")
+    )
+    assert codes == halves / 2
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGKILL")

@@ -32,6 +32,13 @@ def test_runs_are_listed_best_first_with_values_to_sort_by():
     assert "<ig>" not in page
 
 
+def test_a_field_whose_error_is_no_number_is_last_and_has_a_dash():
+    page = render_sweep(SweepData("t", "s", [row("broken", None, 50), *ROWS]))
+    assert page.index("small</td>") < page.index("broken</td>")
+    assert "<td>–</td>" in page
+    assert "<title>broken" not in page
+
+
 def test_each_cost_has_a_drawing_with_every_run():
     page = render_sweep(SweepData("t", "s", ROWS))
     assert len(re.findall(r"<title>small: ", page)) == 3

@@ -98,12 +98,14 @@ def _job(
     threads: int | None,
     **light: Any,
 ) -> Any:
+    from irradia.cli.sweep_arguments import check_arguments
     from irradia.cli.sweep_grid import read_grid
     from irradia.cli.sweep_job import Sweep
     from irradia.cli.sweep_pictures import PictureJob
 
     shared = {"steps": steps, "time": time_s, "batch-size": batch_size}
     runs = read_grid(grid, {name: value for name, value in shared.items() if value is not None})
+    check_arguments(runs, data, grid)
     pictures = None
     if scene is not None:
         pictures = PictureJob(scene, camera, options.light_options(**light), reference_spp)

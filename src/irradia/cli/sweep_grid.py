@@ -111,14 +111,9 @@ class SweepRun:
 
     @property
     def arguments(self) -> list[str]:
-        """As the command line takes them."""
-        given: list[str] = []
-        for name, value in self.choices.items():
-            if value is True:
-                given.append(f"--{name}")
-            elif value is not False:
-                given += [f"--{name}", str(value)]
-        return given
+        """As the command line takes them: one word an option, so that no value passes for another option."""
+        given = {name: value for name, value in self.choices.items() if value is not False}
+        return [f"--{name}" if value is True else f"--{name}={value}" for name, value in given.items()]
 
 
 def read_grid(spec: str, overrides: Mapping[str, Value]) -> tuple[SweepRun, ...]:
@@ -159,6 +154,7 @@ def expand(content: Any, overrides: Mapping[str, Value], where: str) -> tuple[Sw
             if len(runs) == _MAX_RUNS:
                 raise InputError(f"expected at most {_MAX_RUNS:,} runs", where=where)
             runs.append(SweepRun(run_name(own), {**common, **own, **overrides}))
+    _expect_folder_names(runs, where)
     _expect_different(runs, where)
     return tuple(runs)
 
@@ -194,6 +190,12 @@ def _expect_keys(found: Mapping[str, Any], known: Sequence[str], where: str) -> 
     for name in found:
         if name not in known:
             raise InputError(f"unknown key {name!r}", where=where, fix=did_you_mean(name, known))
+
+
+def _expect_folder_names(runs: Sequence[SweepRun], where: str) -> None:
+    for run in runs:  # a folder of that name may be emptied, so it must be the run's own
+        if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9._-]*", run.name):
+            raise InputError(f"{run.name!r} can't be the name of a run's folder", where=where)
 
 
 def _expect_different(runs: Sequence[SweepRun], where: str) -> None:

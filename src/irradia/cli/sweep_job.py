@@ -223,11 +223,13 @@ def _losses(board: _Board) -> dict[str, list[tuple[int, float]]]:
 
 def _formula_cost(path: Path) -> Record:
     """What a query costs by formula."""
+    from irradia.cli.eval_files import encoding_bits
     from irradia.field.cost import query_cost
-    from irradia.field.files import load_field
+    from irradia.field.files import read_field
 
-    cost = query_cost(load_field(path).spec)
-    return {"flops": cost.flops, "encoding_bytes": cost.encoding_bytes(16)}
+    stored = read_field(path)
+    cost = query_cost(stored.field.spec)
+    return {"flops": cost.flops, "encoding_bytes": cost.encoding_bytes(encoding_bits(stored))}
 
 
 def _summary(sweep: Sweep, board: _Board, complete: bool) -> dict[str, Any]:
@@ -248,12 +250,20 @@ def _summary(sweep: Sweep, board: _Board, complete: bool) -> dict[str, Any]:
     }
 
 
+def _score(relmse: float | None) -> str:
+    return "–" if relmse is None else f"{relmse:.3e}"
+
+
 def describe(result: dict[str, Any]) -> str:
     """What came of a sweep, best first."""
+    from irradia.report.sweep import error_of
+
     done = [row for row in result["rows"] if row["status"] == "done"]
     lines = [f"{len(done)} of {result['n_runs']} fields in {result['out']}"]
-    best = sorted(done, key=lambda row: row["relmse"] or 0.0)[:5]
-    lines += [f"  {row['name']:<40} {row['bytes']:>10,} bytes  relMSE {row['relmse']:.3e}" for row in best]
+    best = sorted(done, key=error_of)[:5]
+    lines += [
+        f"  {row['name']:<40} {row['bytes']:>10,} bytes  relMSE {_score(row['relmse'])}" for row in best
+    ]
     lines += [f"  {row['name']} failed: {row['error']}" for row in result["failed"]]
     if not result["complete"]:
         lines.append("Stopped; the same command goes on.")

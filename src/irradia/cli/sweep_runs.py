@@ -3,7 +3,7 @@
 runs/NAME/request.json      what is asked for; another request begins anew
 runs/NAME/field.*           the field, its log and its curves, as `irradia train` writes them
 runs/NAME/messages.txt      what the training said
-runs/NAME/result.json       last, so that a run that has it is done
+runs/NAME/result.json       last; whether the run is done with it, :func:`finished` says
 
 Each training is a process of its own; see :mod:`irradia.cli.sweep_worker`.
 """
@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from irradia.cli.sweep_grid import SweepRun
+from irradia.core.errors import InputError
 from irradia.core.files import write_text_atomic
 
 Record = dict[str, Any]
@@ -61,11 +62,17 @@ class SweepJob:
 
 
 def finished(job: SweepJob, run: SweepRun) -> Record | None:
-    """The result of a run that is done, failed ones included; None where it is still to do."""
+    """The result of a run that is done; None where it is still to do.
+
+    One whose options are wrong has failed for good. One that was killed or met an error of ours is tried
+    again, and so is one whose field has gone.
+    """
     folder = job.folder(run)
     if _read(folder / "request.json") != job.request(run):
         return None
-    return _read(folder / "result.json")
+    result = _read(folder / "result.json") or {}
+    lasts = job.field(run).is_file() if result.get("ok") else result.get("exit_code") == InputError.exit_code
+    return result if lasts else None
 
 
 def train_all(
@@ -100,7 +107,7 @@ def _train(job: SweepJob, run: SweepRun, stop: Callable[[], bool]) -> Record | N
 def command_line(job: SweepJob, run: SweepRun) -> list[str]:
     """The process that trains a run, or goes on with it where there is a checkpoint."""
     worker = [sys.executable, "-m", "irradia.cli.sweep_worker"]
-    train = ["train", str(job.data), "-o", str(job.field(run)), "--seed", str(job.seed), *run.arguments]
+    train = ["train", str(job.data), "-o", str(job.field(run)), f"--seed={job.seed}", *run.arguments]
     going_on = ["--resume"] if (job.folder(run) / "field.checkpoint.npz").is_file() else []
     return [*worker, *train, *going_on, "--json", "--threads", str(job.threads)]
 

@@ -253,7 +253,7 @@ _COUNT = options.Whole(1, 1 << 30)
 @options.threads_option
 @options.json_option
 @click.pass_context
-def command(ctx: click.Context, as_json: bool, **choices: Any) -> int:
+def command(ctx: click.Context, as_json: bool, **_: Any) -> int:
     """Train a neural field from a dataset.
 
     DATA is a file of samples, .samples or the Unity project's .bin; it may still be growing. Beside the
@@ -261,13 +261,19 @@ def command(ctx: click.Context, as_json: bool, **choices: Any) -> int:
     """
     from irradia.core.progress import stderr_progress
 
-    given = {name for name in choices if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE}
-    job = make_job(given, **choices)
+    job = job_of(ctx)
     from irradia.cli.train_run import run_training
 
     result = run_training(job, stderr_progress())
     finish(as_json, result, describe(result))
     return 0 if result["complete"] else INTERRUPTED
+
+
+def job_of(ctx: click.Context) -> TrainJob:
+    """The job that a command line, as parsed, asks for; see :func:`make_job`."""
+    choices = {name: value for name, value in ctx.params.items() if name != "as_json"}
+    given = {name for name in choices if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE}
+    return make_job(given, **choices)
 
 
 def make_job(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
@@ -94,6 +95,12 @@ def render_sweep(data: SweepData) -> str:
     )
 
 
+def error_of(row: Row) -> float:
+    """relMSE, to sort by; infinite where the field gave something that is no number."""
+    relmse = row.get("relmse")
+    return math.inf if relmse is None else relmse
+
+
 def _dots(rows: Sequence[Row], column: str) -> list[Dot]:
     return [
         Dot(row[column], row["relmse"], row["name"], _encoding(row))
@@ -114,7 +121,7 @@ def _table(rows: Sequence[Row]) -> str:
         f'<th><button type="button" data-column="{i}">{escape(_COLUMNS[name][0])}</button></th>'
         for i, name in enumerate(shown)
     )
-    ordered = sorted(rows, key=lambda row: row.get("relmse") or 0.0)
+    ordered = sorted(rows, key=error_of)
     body = "".join(f"<tr>{''.join(_cell(name, row.get(name)) for name in shown)}</tr>" for row in ordered)
     table = f'<table class="numbers sortable"><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>'
     note = "relMSE, PSNR and MAE are of validation samples that training never saw. Click a heading to sort."
