@@ -7,6 +7,7 @@ from typing import get_args
 import numpy as np
 import pytest
 
+from irradia.core.errors import InputError
 from irradia.core.rng import Seed
 from irradia.field.activations import ACTIVATIONS
 from irradia.field.backend import AdamOptions, Batch, LossName, Parameters, Rates, StepOptions, TrainState
@@ -172,3 +173,9 @@ def test_no_points_give_no_outputs():
     spec = FieldSpec(GRID, Identity(), width=8)
     none = np.zeros((0, 3), np.float32)
     assert NumbaBackend(1).evaluator(spec, parameters_of(spec))(none, none).shape == (0, 3)
+
+
+def test_normals_that_are_missing_are_not_made_of_positions():
+    spec = FieldSpec(GRID, Identity(), width=8)
+    with pytest.raises(InputError, match="normals"):
+        NumbaBackend(1).evaluator(spec, parameters_of(spec))(np.zeros((5, 3), np.float32), None)

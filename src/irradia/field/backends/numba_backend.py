@@ -13,6 +13,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from irradia.core.errors import InputError
 from irradia.field.backend import (
     F32,
     Backend,
@@ -117,7 +118,9 @@ class _Features:
             self.points = {each.name: np.zeros((3, n_tiles * TILE), np.float32) for each in self.placed}
         for each in self.placed:
             points = self.points[each.name]
-            values = x if each.name == "position" or normal is None else normal
+            values = x if each.name == "position" else normal
+            if values is None:
+                raise InputError("a field of irradiance is asked under normals, and there are none")
             points[:, : len(x)] = values.T
             points[:, len(x) :] = values[-1:].T
             if each.from_cube:
