@@ -13,8 +13,9 @@ from irradia.cli import app
 from irradia.export.field_extension import read_baked_field
 from irradia.field.bin_conventions import BinConventions
 from irradia.field.bin_reader import decode_bin
-from irradia.field.files import load_field, read_field
-from irradia.formats.samples import SampleInfo, SampleWriter
+from irradia.field.files import load_field, read_field, save_field
+from irradia.formats.samples import SampleFile, SampleInfo, SampleWriter
+from irradia.formats.samples_bin import write_samples_bin
 from irradia.scene.gltf import read_document
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -39,9 +40,9 @@ def places(n: int = 64) -> tuple[np.ndarray, np.ndarray]:
     return rng.uniform(*BOX, (n, 3)).astype(np.float32), normals.astype(np.float32)
 
 
-def samples(path: Path, light: np.ndarray) -> Path:
+def samples(path: Path, light: np.ndarray, quantity: str = "full") -> Path:
     rows = np.hstack([*places(len(light)), light, np.zeros((len(light), 1))]).astype(np.float32)
-    with SampleWriter(path, SampleInfo("volume", BOX)) as writer:
+    with SampleWriter(path, SampleInfo("volume", BOX, quantity)) as writer:
         writer.append(rows)
     return path
 
@@ -57,13 +58,15 @@ def test_formats_hold_the_same_field(export, tmp_path: Path, name: str) -> None:
 @pytest.mark.parametrize("bits", [4, 8])
 def test_tables_are_rounded_and_taught(export, tmp_path: Path, bits: int) -> None:
     truth = 1.25 * load_field(GRID).irradiance(*places(4000))  # so there is something to learn
-    data = samples(tmp_path / "d.samples", truth)
+    data = samples(tmp_path / "d.samples", truth, load_field(GRID).frame.quantity)
     rounded, taught = tmp_path / "r.safetensors", tmp_path / "t.safetensors"
     assert export(GRID, "-o", rounded, "--finish", f"int{bits}")[0] == 0
     assert export(GRID, "-o", taught, "--finish", f"int{bits}", "--samples", data)[0] == 0
     errors = []
     for path in (rounded, taught):
         stored = read_field(path)
+        assert stored.provenance["export"]["config"]["finish"] == f"int{bits}"
+        assert stored.provenance["export"]["inputs"].keys() >= {GRID.name}
         assert {tensor.bits for tensor in stored.tensors.values()} == {bits}
         errors.append(np.abs(stored.field.irradiance(*places(4000)) - truth).mean())
     assert errors[1] < 0.5 * errors[0]
@@ -91,12 +94,55 @@ def test_conventions_are_named_or_found(export, tmp_path: Path) -> None:
         ("-o", "x.bin", "--preset", "lamp"),
         ("-o", "x.bin", "--convention", "bias=lamp"),
         ("-o", "x.safetensors", "--calibrate", str(GRID)),
+        ("-o", "x.safetensors", "--preset", "pytorch"),
+        ("-o", "x.safetensors", "--convention", "bias=last"),
+        ("-o", "x.safetensors", "--samples", str(GRID)),
+        ("-o", "x.safetensors", "--quantity", "indirect"),
+        ("-o", "x.bin", "--precision", "fp32"),
+        ("-o", "x.bin", "--finish", "int8"),
     ],
 )
 def test_wrong_options_are_bad_input(capfd, tmp_path: Path, monkeypatch, arguments) -> None:
     monkeypatch.chdir(tmp_path)
     assert app.run(["export", str(GRID), *arguments]) == 2
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("out", [("-o", "x.glb"), ("-o", "x.glb", "--scene", str(GRID)), ("-o", "x.bin")])
+def test_nothing_is_finished_that_cannot_be_written(tmp_path: Path, monkeypatch, out) -> None:
+    def finish(*_: Any, **__: Any) -> None:
+        raise AssertionError("finished before the check")
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("irradia.field.quantise.finish", finish)
+    data = samples(tmp_path / "d.samples", np.ones((64, 3)))
+    assert app.run(["export", str(GRID), *out, "--finish", "int8", "--samples", str(data)]) == 2
+
+
+def test_samples_to_finish_by_are_of_the_fields_light(tmp_path: Path, capfd) -> None:
+    quantity = {"full": "indirect", "indirect": "full"}[load_field(GRID).frame.quantity]
+    data = samples(tmp_path / "d.samples", np.ones((64, 3)), quantity)
+    out = tmp_path / "x.safetensors"
+    assert app.run(["export", str(GRID), "-o", str(out), "--finish", "int8", "--samples", str(data)]) == 2
+    assert "light as the field holds" in capfd.readouterr().err
+
+
+def test_a_bin_of_samples_is_read_as_is_said(export, tmp_path: Path) -> None:
+    field = load_field(ROOT / "vectors" / "hash-sh1.safetensors")
+    save_field(tmp_path / "sh.bin", field)
+    positions, _ = places(64)
+    rows = np.hstack([positions, field.coefficients(positions).reshape(64, 12), np.zeros((64, 1))])
+    source = SampleFile(
+        tmp_path / "d.samples", SampleInfo("sh", BOX, n_coefficients=4), rows.astype(np.float32)
+    )
+    write_samples_bin(tmp_path / "d.bin", source, coefficients="irradiance")
+    known = ("-o", tmp_path / "f.safetensors", "--calibrate", tmp_path / "d.bin")
+    code, said = export(tmp_path / "sh.bin", *known, "--coefficients", "irradiance", "--quantity", "indirect")
+    assert code == 0
+    assert said["calibration"]["error"] < 5e-3
+    assert load_field(tmp_path / "f.safetensors").frame.quantity == "indirect"
+    code, said = export(tmp_path / "sh.bin", *known)
+    assert code == 2 or said["calibration"]["error"] > 0.05
 
 
 def test_samples_of_other_light_are_not_believed(capfd, tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ from irradia.core.provenance import sha256_file
 from irradia.field.encodings import Identity, OneBlob, SphericalHarmonics
 from irradia.field.files import read_field
 from irradia.field.registry import print_spec, spec_to_dict
-from irradia.formats.samples import SampleInfo, SampleWriter
+from irradia.formats.samples import SampleInfo, SampleWriter, open_samples
 from irradia.formats.samples_bin import write_samples_bin
 
 BOX = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
@@ -166,12 +166,29 @@ def test_sh_samples_imply_sh_mode(train, tmp_path):
 
 
 def test_samples_of_the_unity_project_are_read(train, tmp_path, data):
-    from irradia.formats.samples import open_samples
-
     write_samples_bin(tmp_path / "unity.bin", open_samples(data))
     code, said = train(tmp_path / "unity.bin", "-o", tmp_path / "f.safetensors")
     assert code == 0
     assert said["samples"] == 588
+
+
+def test_a_bin_of_samples_is_of_the_light_that_is_said(train, tmp_path):
+    data = write_samples(tmp_path / "room.samples", kind="sh")
+    write_samples_bin(tmp_path / "unity.bin", open_samples(data))
+    out, said = tmp_path / "f.safetensors", ("--quantity", "indirect", "--coefficients", "irradiance")
+    assert train(tmp_path / "unity.bin", "-o", out, *said)[0] == 0
+    stored = read_field(out)
+    assert stored.field.frame.quantity == "indirect"
+    asked = stored.provenance["config"]["bin_samples"]
+    assert asked == {"coefficients": "irradiance", "quantity": "indirect"}
+    assert stored.provenance["samples"]["coefficients"] == "irradiance"
+
+
+@pytest.mark.parametrize("option", [("--quantity", "full"), ("--coefficients", "radiance")])
+def test_our_own_samples_say_what_they_are(train, data, tmp_path, option):
+    code, said = train(data, "-o", tmp_path / "f.safetensors", *option)
+    assert code == 2
+    assert option[0] in said["error"]["where"]
 
 
 def test_samples_for_validation_are_found_beside_the_data(train, data, tmp_path):

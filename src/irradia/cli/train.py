@@ -9,6 +9,7 @@ import click
 from click.core import ParameterSource
 
 from irradia.cli import options
+from irradia.cli.bin_samples import bin_options, bin_sample_options
 from irradia.cli.output import INTERRUPTED, finish
 from irradia.cli.sections import SectionedCommand
 
@@ -29,7 +30,7 @@ SECTIONS = {
     ),
     "Samples": (
         *("--jitter-copies", "--jitter-radius", "--jitter-scene", "--smooth-k", "--smooth-normal-thresh"),
-        *("--memory", "--follow"),
+        *("--coefficients", "--quantity", "--memory", "--follow"),
     ),
     "Validation": ("--validation", "--validate-every", "--hold-out-blocks"),
     "Interruptions and machines": ("--resume", "--checkpoint", "--backend", "--threads"),
@@ -215,6 +216,7 @@ _COUNT = options.Whole(1, 1 << 30)
     metavar="MIB",
     help="For samples; larger files are read in shuffled windows.",
 )
+@bin_sample_options
 @click.option("--follow", is_flag=True, help="Wait for DATA to appear.")
 @click.option(
     "--validation", type=_FILE, metavar="FILE", help="Samples to judge by.  [default: DATA's own, else 2 %]"
@@ -292,6 +294,8 @@ def make_job(
     jitter_scene: str | None,
     follow: bool,
     validation: Path | None,
+    coefficients: str | None,
+    quantity: str | None,
     resume: bool,
     backend: str,
     threads: int | None,
@@ -335,6 +339,7 @@ def make_job(
         resume=resume,
         finish=finishing,  # type: ignore[arg-type]
         precision=precision,  # type: ignore[arg-type]
+        bin_samples=bin_options(coefficients, quantity, data or data_flag, validation),
     )
 
 

@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 from irradia.cli.train_spec import SpecChoices
 from irradia.field.training.options import TrainOptions
+from irradia.formats.samples_bin import BinOptions
 
 Precision = Literal["fp16", "fp32"]
 Finish = Literal["int8", "int4"]
@@ -30,6 +31,7 @@ class TrainJob:
         resume: Go on from the checkpoint beside ``out``.
         finish: Quantise what was trained.
         precision: Of everything that isn't quantised.
+        bin_samples: What samples don't say of themselves where they are a ``.bin``.
     """
 
     data: Path
@@ -44,6 +46,7 @@ class TrainJob:
     resume: bool = False
     finish: Finish | None = None
     precision: Precision = "fp16"
+    bin_samples: BinOptions = field(default_factory=BinOptions)
 
     def beside(self, end: str) -> Path:
         """A file beside the field's, of its name with another end."""

@@ -8,8 +8,6 @@ from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from irradia.cli.train_job import TrainJob
 from irradia.cli.train_view import shown
 from irradia.core import provenance
@@ -19,9 +17,9 @@ from irradia.core.rng import Seed
 from irradia.field.backend import Backend
 from irradia.field.backends import backend as find_backend
 from irradia.field.field import Field
-from irradia.field.files import FORMATS, load_field, save_field
+from irradia.field.files import check_format, load_field, save_field
 from irradia.field.registry import spec_to_dict
-from irradia.field.spec import FieldFrame, FieldSpec
+from irradia.field.spec import FieldSpec
 from irradia.field.training import Figures, Finished, Saved, TrainContext, Validated, train
 from irradia.field.training.checkpoint import read_step
 from irradia.field.training.curves import write_curves
@@ -49,7 +47,7 @@ def run_training(job: TrainJob, progress: Progress) -> dict[str, Any]:
     start = time.perf_counter()
     samples = open_data(job, progress)
     spec = job.choices.spec(samples.info)
-    check_can_save(job, spec)
+    check_format(job.out, spec, precision=job.precision, finish=job.finish)
     backend = find_backend(job.backend, spec, job.threads)
     validation = _validation(job, samples)
     finished = _train(job, samples, validation, spec, backend, progress)
@@ -79,31 +77,11 @@ def open_data(job: TrainJob, progress: Progress) -> SampleFile:
         with progress.stage("Wait for samples"):
             while not _is_there(job.data):
                 time.sleep(_WAIT_S)
-    return open_samples(job.data)
+    return open_samples(job.data, job.bin_samples)
 
 
 def _is_there(path: Path) -> bool:
     return path.is_file() or part_path(path).is_file()
-
-
-def check_can_save(job: TrainJob, spec: FieldSpec) -> None:
-    """Refuses before training what couldn't be saved after it.
-
-    Raises:
-        InputError: The format is unknown, or can't hold such a field.
-    """
-    name = job.out.name.lower()
-    if not name.endswith(FORMATS):
-        raise InputError(f"expected a name that ends in {', '.join(FORMATS)}", where=f"-o {job.out}")
-    if not name.endswith(".bin"):
-        return
-    if job.finish is not None or job.precision != "fp16":
-        asked = f"--finish {job.finish}" if job.finish is not None else f"--precision {job.precision}"
-        raise InputError("a .bin holds halves", where=asked, fix="Save as .safetensors.")
-    from irradia.field.bin_writer import encode_bin
-
-    zeros = {name: np.zeros(shape, np.float32) for name, shape in spec.parameter_shapes().items()}
-    encode_bin(Field(spec, FieldFrame(np.array([[0, 0, 0], [1, 1, 1]], np.float32)), zeros))
 
 
 def _train(
@@ -145,7 +123,7 @@ def _validation(job: TrainJob, samples: SampleFile) -> SampleFile | None:
         InputError: They can't be read, or those beside the data were left by another sampling.
     """
     if job.validation is not None:
-        return open_samples(job.validation)
+        return open_samples(job.validation, job.bin_samples)
     beside = validation_path(job.data.with_suffix(".samples"))
     if not beside.is_file() or beside == samples.path:
         return None

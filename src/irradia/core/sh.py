@@ -53,10 +53,17 @@ def irradiance(coefficients: ArrayLike, normals: ArrayLike) -> NDArray[np.float6
     """E, W·m⁻², linear Rec.709.
 
     Args:
-        coefficients: (…, 9, 3) of radiance.
+        coefficients: (…, 4 or 9, 3) of radiance.
         normals: (…, 3) unit; leading axes broadcast against those of ``coefficients``.
     """
-    return np.einsum("...i,...ic->...c", irradiance_weights(normals), np.asarray(coefficients, np.float64))
+    series = np.asarray(coefficients, np.float64)
+    weights = irradiance_weights(normals)[..., : series.shape[-2]]
+    return np.einsum("...i,...ic->...c", weights, series)
+
+
+def light_on(coefficients: ArrayLike, normals: ArrayLike) -> NDArray[np.float64]:
+    """:func:`irradiance`, and nothing where the cut-off series dips below it."""
+    return np.maximum(irradiance(coefficients, normals), 0.0)
 
 
 def fibonacci_sphere(n: int) -> NDArray[np.float64]:

@@ -76,6 +76,20 @@ def read_baked_field(document: GltfDocument) -> StoredField | None:
     return stored
 
 
+def read_baked_document(source: Path | str) -> GltfDocument:
+    """A .glb that `irradia bake` wrote.
+
+    Raises:
+        InputError: It can't be read, or isn't baked.
+    """
+    document = read_document(Path(source))
+    if JsonView(document.json).extension(NAME) is None:
+        raise InputError(
+            f"expected a baked scene ({NAME})", where=str(source), fix="Make one with `irradia bake`."
+        )
+    return document
+
+
 def put_field(source: Path | str, data: bytes, target: Path | str | None = None) -> int:
     """Writes a baked .glb again with a field in it; everything else keeps its meaning and its index.
 
@@ -90,11 +104,7 @@ def put_field(source: Path | str, data: bytes, target: Path | str | None = None)
     Raises:
         InputError: The source isn't baked, or the data no field.
     """
-    document = read_document(Path(source))
-    if JsonView(document.json).extension(NAME) is None:
-        raise InputError(
-            f"expected a baked scene ({NAME})", where=str(source), fix="Make one with `irradia bake`."
-        )
+    document = read_baked_document(source)
     json = copy.deepcopy(document.json)
     slots = Slots(json, Accessors(document))
     add_field(json, slots, data)

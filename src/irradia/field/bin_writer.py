@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 
 from irradia.core.errors import InputError
 from irradia.field.bin_reader import CHANNEL_FROM_OURS
+from irradia.field.encoding import Encoding
 from irradia.field.encodings import Frequency, HashGrid, Identity, TriPlane
 from irradia.field.field import Field
+from irradia.field.spec import FieldSpec
 from irradia.field.tensors import to_halves
 from irradia.formats.field_bin import FREQUENCY, HASH, TRI_PLANE, BinHeader, encode_field_bin, padded
 
@@ -27,20 +29,19 @@ def encode_bin(field: Field) -> bytes:
     Raises:
         InputError: The field has an encoding, activation, head or mode that the file can't express.
     """
-    check_bin(field)
+    check_bin(field.spec)
     network = np.concatenate([part for layer in _layers(field) for part in layer])
     return encode_field_bin(
         _header(field), to_halves(_encoding(field), "position"), to_halves(network, "mlp")
     )
 
 
-def check_bin(field: Field) -> None:
-    """Refuses a field that a ``.bin`` can't express.
+def check_bin(spec: FieldSpec) -> None:
+    """Refuses fields that a ``.bin`` can't express.
 
     Raises:
         InputError: It says what, and what to do instead.
     """
-    spec = field.spec
     if spec.activation != "relu":
         _refuse(f"the activation {spec.activation}", "relu")
     if spec.mode == "sh2":
@@ -49,7 +50,7 @@ def check_bin(field: Field) -> None:
         _refuse(f"the head {spec.head}", "exp")
     if not isinstance(spec.direction, Identity | None):
         _refuse(f"the {spec.direction.name} encoding of normals", "identity")
-    _header(field)
+    _sizes(spec.position)
 
 
 def _refuse(what: str, instead: str) -> Never:
@@ -59,23 +60,28 @@ def _refuse(what: str, instead: str) -> Never:
 
 
 def _header(field: Field) -> BinHeader:
-    position, spec = field.spec.position, field.spec
-    resolutions = (0.0, 0.0)
+    spec = field.spec
+    kind, a, b, c, resolutions = _sizes(spec.position)
+    return BinHeader(kind, a, b, c, resolutions, padded(spec.width), spec.n_hidden_layers, field.frame.aabb)
+
+
+def _sizes(position: Encoding) -> tuple[int, int, int, int, tuple[float, float]]:
+    """An encoding's number, a, b and c, and its resolutions."""
     match position:
         case HashGrid():
             if position != _plain(position):
                 _refuse("a hash grid of rarer conventions", "a hash grid by tiny-cuda-nn's conventions")
-            kind, sizes = HASH, (position.n_levels, 1 << position.log2_table_size, position.n_features)
             resolutions = (float(position.base_resolution), float(position.max_resolution))
+            n_entries = 1 << position.log2_table_size
+            return HASH, position.n_levels, n_entries, position.n_features, resolutions
         case TriPlane():
             if position.align_corners:
                 _refuse("planes whose corners are aligned", "align_corners off")
-            kind, sizes = TRI_PLANE, (position.resolution, 0, position.n_features)
+            return TRI_PLANE, position.resolution, 0, position.n_features, (0.0, 0.0)
         case Frequency():
-            kind, sizes = FREQUENCY, (position.n_frequencies, 0, int(position.include_identity))
+            return FREQUENCY, position.n_frequencies, 0, int(position.include_identity), (0.0, 0.0)
         case _:
             _refuse(f"the encoding {position.name}", "hash, triplane or frequency")
-    return BinHeader(kind, *sizes, resolutions, padded(spec.width), spec.n_hidden_layers, field.frame.aabb)
 
 
 def _plain(grid: HashGrid) -> HashGrid:

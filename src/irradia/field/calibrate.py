@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from irradia.core.errors import InputError
 from irradia.core.progress import Progress, silent_progress
-from irradia.core.sh import irradiance_weights
+from irradia.core.sh import light_on
 from irradia.field import mlp
 from irradia.field.bin_conventions import BinConventions, all_conventions
 from irradia.field.bin_reader import encoding_of, fits, frame_of, network_of, spec_of, to_field
@@ -116,8 +116,7 @@ def _irradiance(
     outputs, _ = mlp.forward(spec, network_of(content, choice), inputs)
     if spec.mode == "irradiance":
         return outputs
-    weights = irradiance_weights(normals)[:, :4].astype(np.float32)
-    return np.maximum(np.einsum("ni,nic->nc", weights, outputs.reshape(-1, 4, 3)), 0.0)
+    return light_on(outputs.reshape(-1, 4, 3), normals).astype(np.float32)
 
 
 def _error(predicted: F32, irradiance: F32) -> float:

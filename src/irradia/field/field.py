@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.core.errors import InputError
-from irradia.core.sh import irradiance_weights
+from irradia.core.sh import light_on
 from irradia.field.backend import Evaluator, Parameters
 from irradia.field.backends import backend
 from irradia.field.checks import check_parameters
@@ -47,9 +47,7 @@ class Field:
         """
         if self.spec.mode == "irradiance":
             return np.maximum(self._evaluate(positions, normals), 0.0)
-        coefficients = self.coefficients(positions)
-        weights = irradiance_weights(normals)[:, : coefficients.shape[1]].astype(np.float32)
-        return np.maximum(np.einsum("ni,nic->nc", weights, coefficients), 0.0)
+        return light_on(self.coefficients(positions), normals).astype(np.float32)
 
     def coefficients(self, positions: NDArray[np.float32]) -> NDArray[np.float32]:
         """SH coefficients of radiance (N, 4 or 9, 3), in the order of docs/conventions.md.

@@ -21,6 +21,7 @@ from irradia.field.bin_writer import check_bin, encode_bin
 from irradia.field.field import Field
 from irradia.field.native_fields import Precision, StoredField, decode_field, encode_field
 from irradia.field.quantised import QuantisedField
+from irradia.field.spec import FieldSpec
 
 FORMATS = (".safetensors", ".safetensors.zst", ".bin")
 
@@ -56,18 +57,26 @@ def save_field(
     return len(data)
 
 
-def check_format(path: Path | str, made: Field) -> None:
-    """Refuses early what :func:`save_field` would refuse.
+def check_format(
+    path: Path | str, spec: FieldSpec, *, precision: Precision = "fp16", finish: str | None = None
+) -> None:
+    """Refuses before any work what a file of that name couldn't hold after it.
 
     Args:
         path: Where a field is to be written.
-        made: One of its spec, of any values.
+        spec: Its architecture.
+        precision: That is asked for.
+        finish: How its tables are to be quantised, as on the command line.
 
     Raises:
         InputError: The name has another end than those of ``FORMATS``, or the format can't hold the field.
     """
-    if _format(path) == ".bin":
-        check_bin(made)
+    if _format(path) != ".bin":
+        return
+    if finish is not None or precision != "fp16":
+        asked = f"--precision {precision}" if finish is None else f"--finish {finish}"
+        raise InputError("a .bin holds halves", where=asked, fix="Save as .safetensors.")
+    check_bin(spec)
 
 
 def load_field(path: Path | str, conventions: BinConventions | None = None) -> Field:

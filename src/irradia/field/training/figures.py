@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irradia.core.sh import fibonacci_sphere, irradiance
+from irradia.core.sh import fibonacci_sphere, light_on
 from irradia.field.backend import F32, Evaluator
 from irradia.field.spec import FieldFrame
 from irradia.formats.samples import SampleFile
@@ -120,10 +120,7 @@ def judge(samples: SampleFile, rows: NDArray[np.int64], frame: FieldFrame) -> Ju
 
 def irradiance_of(coefficients: NDArray[np.float64], normals: F32) -> NDArray[np.float64]:
     """E (N, 3) of flattened coefficients (N, 12 or 27) at unit normals (N, 3)."""
-    table = coefficients.reshape(len(coefficients), -1, 3)
-    whole = np.zeros((len(table), 9, 3))
-    whole[:, : table.shape[1]] = table
-    return irradiance(whole, normals)
+    return light_on(coefficients.reshape(len(coefficients), -1, 3), normals)
 
 
 def _directions(n: int) -> F32:
