@@ -8,7 +8,7 @@ import os
 import pytest
 
 from irradia.core import files
-from irradia.core.files import disk_problem, write_atomic, write_text_atomic
+from irradia.core.files import disk_problem, place_problem, write_atomic, write_text_atomic
 
 
 class _SmallDisk:
@@ -70,6 +70,17 @@ def test_trouble_with_the_disk_is_explained(number):
     assert problem.exit_code == 2
     assert problem.where == "out/lightmap.exr"
     assert problem.fix is not None
+
+
+@pytest.mark.parametrize("place", ["text.txt/deep/x.bin", "folder"])
+def test_a_name_that_is_taken_is_explained(tmp_path, place):
+    (tmp_path / "text.txt").write_text("a file")
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(OSError, match="exists|directory") as caught, write_atomic(tmp_path / place) as stream:
+        stream.write(b"x")
+    problem = place_problem(caught.value)
+    assert problem is not None
+    assert "stands where" in problem.message
 
 
 def test_other_errors_are_not_the_disks():

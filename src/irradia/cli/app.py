@@ -14,7 +14,7 @@ import click
 from irradia import __version__
 from irradia.cli.output import INTERRUPTED, reserve_stdout, write_json
 from irradia.core.errors import InputError, IrradiaError
-from irradia.core.files import disk_problem
+from irradia.core.files import disk_problem, place_problem
 
 _INTERRUPTED = "stopped; files already finished are whole, run again to go on"
 
@@ -89,7 +89,7 @@ def _run(arguments: Sequence[str], *, wants_json: bool) -> int:
     except MemoryError:
         return _fail(wants_json, "not enough memory; a smaller --resolution needs less", InputError.exit_code)
     except OSError as error:
-        problem = disk_problem(error)
+        problem = disk_problem(error) or place_problem(error)
         if problem is None:
             return _our_fault(wants_json, error)
         return _fail(wants_json, str(problem), problem.exit_code, problem.where)

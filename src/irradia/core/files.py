@@ -19,6 +19,13 @@ _DISK_PROBLEMS = {
     errno.EROFS: "the disk can only be read",
     errno.EIO: "the disk reports an error",
 }
+_PLACE_PROBLEMS = {
+    errno.EACCES: "it may not be read or written",
+    errno.EPERM: "it may not be read or written",
+    errno.ENOTDIR: "a file stands where a folder is needed",
+    errno.EEXIST: "a file stands where a folder is needed",
+    errno.EISDIR: "a folder stands where a file is needed",
+}
 
 
 @contextmanager
@@ -66,3 +73,11 @@ def disk_problem(error: OSError, where: Path | str | None = None) -> InputError 
         where=str(where or error.filename or "") or None,
         fix="Make room there, or choose another place with -o.",
     )
+
+
+def place_problem(error: OSError) -> InputError | None:
+    """What to tell the user of a name that can't be used, or None if the error is of another kind."""
+    reason = _PLACE_PROBLEMS.get(error.errno or 0)
+    if reason is None or not error.filename:
+        return None
+    return InputError(reason, where=str(error.filename), fix="Choose another name or place.")
