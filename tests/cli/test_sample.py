@@ -17,6 +17,15 @@ from irradia.formats.samples import open_samples, part_path
 
 from .workshop import bake, lamp, write_workshop
 
+DIM_IES = """IESNA:LM-63-2002
+[TEST] a hundredth of a candela all around
+TILT=NONE
+1 -1 1 2 1 1 2 0 0 0
+1 1 0
+0 180
+0
+0.01 0.01
+"""
 SMALL = ["--count", "600", "--samples", "8", "--resolution", "32", "--validation", "100"]
 
 
@@ -77,6 +86,33 @@ def test_a_bin_that_fails_leaves_nothing_beside_it(workshop, tmp_path, monkeypat
     monkeypatch.setattr("irradia.formats.sample_writer.SampleWriter.append", fail)
     assert sample(workshop, tmp_path / "data.bin", "--validation", "0") != 0
     assert not list(tmp_path.glob("data*"))
+
+
+def test_materials_are_replaced_before_light_is_gathered(workshop, tmp_path):
+    assert sample(workshop, tmp_path / "as_is.samples") == 0
+    black = ["grey:albedo=0,0,0", "red:albedo=0,0,0"]
+    options = ("--material-override", black[0], "--material-override", black[1])
+    assert sample(workshop, tmp_path / "black.samples", *options) == 0
+    as_is, found = (open_samples(tmp_path / f"{name}.samples") for name in ("as_is", "black"))
+    assert 0.0 < found.values.mean() < 0.95 * as_is.values.mean()
+    assert found.info.provenance["config"]["overrides"] == black
+
+
+def test_materials_are_replaced_in_a_finished_bake_too(workshop, tmp_path):
+    override = ("--material-override", "grey:emission=3")
+    bake(workshop, tmp_path / "bake", "--samples", "16", *override)
+    for name, how in (("own", ()), ("given", ("--lightmap", str(tmp_path / "bake")))):
+        assert sample(workshop, tmp_path / f"{name}.samples", "--samples", "64", *override, *how) == 0
+    own, given = (open_samples(tmp_path / f"{name}.samples") for name in ("own", "given"))
+    np.testing.assert_allclose(given.values.mean(), own.values.mean(), rtol=0.03)
+
+
+def test_a_measured_lamp_shines_as_measured(workshop, tmp_path):
+    (tmp_path / "dim.ies").write_text(DIM_IES, encoding="utf-8")
+    assert sample(workshop, tmp_path / "as_is.samples") == 0
+    assert sample(workshop, tmp_path / "dim.samples", "--ies", f"left lamp={tmp_path / 'dim.ies'}") == 0
+    as_is, found = (open_samples(tmp_path / f"{name}.samples") for name in ("as_is", "dim"))
+    assert found.values.mean() < 0.7 * as_is.values.mean()
 
 
 def test_a_finished_bake_serves_as_the_light_of_surfaces(workshop, tmp_path):

@@ -53,6 +53,14 @@ def test_the_field_takes_the_place_of_the_bake_on_the_stage(data):
     assert "Baked" not in html.split("<script>")[0].split("</style>")[1]
 
 
+def test_rows_of_the_table_of_rivals_stand_in_no_other_row(field):
+    table = re.search(r'<table class="numbers">(.*?)</table>', "".join(field_sections(field)), re.DOTALL)
+    assert table is not None
+    rows = re.split(r"<tr>|</tr>", table[1])
+    assert table[1].count("<tr>") == table[1].count("</tr>") == 1 + len(field.rivals)
+    assert [row.count("<td>") for row in rows if row] == [5] * (1 + len(field.rivals))
+
+
 def test_rivals_stand_in_order_with_their_bytes(field):
     html = "".join(field_sections(field))
     order = [html.index(rival.name) for rival in field.rivals]

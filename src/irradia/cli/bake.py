@@ -87,6 +87,7 @@ SECTIONS = {
 @options.lighting_options
 @options.scene_options
 @options.map_options
+@options.override_options
 @click.option("--only", multiple=True, metavar="NAME", help="Bake this object alone; * and ? match.")
 @click.option("--update", is_flag=True, help="Bake only what has changed since the last --update here.")
 @click.option("--fast-rays", is_flag=True, help="Faster intersection that may miss edges.")

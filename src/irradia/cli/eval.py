@@ -113,8 +113,7 @@ class Names(click.ParamType):
 )
 @options.lighting_options
 @options.scene_options
-@click.option("--material-override", multiple=True, metavar="SPEC", help="As of irradia bake.")
-@click.option("--ies", multiple=True, metavar="[LIGHT=]FILE", help="As of irradia bake.")
+@options.override_options
 @options.seed_option
 @options.device_option
 @options.threads_option

@@ -188,6 +188,13 @@ def map_options(function: F) -> F:
             help="Of the maps: exr, exr-half, hdr, rgbm, rgbm-linear, ktx2-half, ktx2-rgb9e5, ktx2-bc6h; "
             "several with commas, or all.",
         ),
+    )
+
+
+def override_options(function: F) -> F:
+    """What is known of the scene better than its file says: materials, and lamps as measured."""
+    return _apply(
+        function,
         click.option(
             "--material-override",
             multiple=True,

@@ -20,7 +20,7 @@ SECTIONS = {
     "Light": ("--quantity", "--samples", "--integrator", "--lightmap", "--resolution", "--fast-rays"),
     "The scene": (
         *("--env", "--env-rotation", "--env-strength", "--env-color", "--sky", "--no-default-light"),
-        *("--variant", "--pose-time"),
+        *("--ies", "--material-override", "--variant", "--pose-time"),
     ),
     "Machine": ("--seed", "--device", "--threads"),
 }
@@ -92,6 +92,7 @@ SECTIONS = {
 )
 @options.lighting_options
 @options.scene_options
+@options.override_options
 @click.option("--fast-rays", is_flag=True, help="Faster intersection that may miss edges.")
 @options.seed_option
 @options.device_option
@@ -121,6 +122,8 @@ def make_job(
     spacing: float | None,
     lightmap: Path | None,
     resolution: int | None,
+    material_override: tuple[str, ...],
+    ies: tuple[str, ...],
     variant: str | None,
     pose_time: float | None,
     device: str,
@@ -140,6 +143,8 @@ def make_job(
         light=options.light_options(**{name: choices.pop(name) for name in options.LIGHT_NAMES}),
         layout=LayoutOptions(resolution=resolution),
         options=SampleOptions(placement=kind, spacing_m=spacing, **choices),  # type: ignore[arg-type]
+        overrides=material_override,
+        ies=ies,
         lightmap=lightmap,
         validation=validation,
         device=device,  # type: ignore[arg-type]

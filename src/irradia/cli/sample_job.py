@@ -42,6 +42,8 @@ class SampleJob:
         out: The dataset; a ``.bin`` for the Unity project.
         layout: Of the lightmap that is baked for the rays to read.
         options: Which points.
+        overrides: As in :class:`irradia.cli.bake_job.BakeJob`.
+        ies: Likewise.
         lightmap: A finished bake to read instead: its folder or its ``scene.baked.glb``.
         validation: Points of the second file, which is of higher quality; 0 for none.
     """
@@ -52,6 +54,8 @@ class SampleJob:
     light: LightOptions = field(default_factory=LightOptions)
     layout: LayoutOptions = field(default_factory=LayoutOptions)
     options: SampleOptions = field(default_factory=SampleOptions)
+    overrides: tuple[str, ...] = ()
+    ies: tuple[str, ...] = ()
     lightmap: Path | None = None
     validation: int = DEFAULT_VALIDATION
     device: DeviceChoice = "auto"
@@ -185,7 +189,7 @@ def open_lit_scene(job: SampleJob, progress: Progress) -> tuple[Scene, BakedPage
     from irradia.bake.datasets.light import bake_all_light
     from irradia.cli.bake_job import open_scene, scene_hash
 
-    scene = open_scene(job.scene, job.load, job.light, progress)
+    scene = open_scene(job.scene, job.load, job.light, progress, overrides=job.overrides, ies=job.ies)
     inputs = {Path(job.scene).name: scene_hash(scene)}
     if job.light.env is not None:
         inputs[job.light.env.name] = provenance.sha256_file(job.light.env)
@@ -196,8 +200,12 @@ def open_lit_scene(job: SampleJob, progress: Progress) -> tuple[Scene, BakedPage
         lightmap = bake_all_light(scene, job.layout, progress, seed=options.seed, fast_rays=options.fast_rays)
         return scene, lightmap, inputs
     from irradia.cli.sample_lightmap import read_all_light
+    from irradia.scene.material_override import override_materials
+    from irradia.scene.material_override_file import read_material_overrides
 
     scene, lightmap, path = read_all_light(job.lightmap, scene, job.load)
+    if job.overrides:  # the baked file has the materials as they were
+        scene = override_materials(scene, read_material_overrides(job.overrides))
     return scene, lightmap, inputs | {path.name: provenance.sha256_file(path)}
 
 

@@ -49,9 +49,7 @@ def field_sections(field: FieldSummary, first_view: int = 0) -> tuple[str, ...]:
 def _rivals(rivals: tuple[Rival, ...]) -> str:
     if not rivals:
         return ""
-    head = (
-        "<tr><td></td><td>Size</td><td>HDR-FLIP</td><td>relMSE, noise removed</td><td>MSE in space</td></tr>"
-    )
+    head = "".join(f"<td>{name}</td>" for name in _COLUMNS)
     rows = "".join(_row(rival) for rival in rivals)
     note = "Means over the views. ≈ marks what is no larger than the reference's own noise."
     table = f'<table class="numbers"><tr>{head}</tr>{rows}</table>'
