@@ -12,12 +12,15 @@ import numpy as np
 import pytest
 
 from irradia.cli import app, train_run
+from irradia.cli.train_run import overfitting
 from irradia.cli.train_spec import parse_direction
 from irradia.core.errors import InputError
 from irradia.core.provenance import sha256_file
 from irradia.field.encodings import Identity, OneBlob, SphericalHarmonics
 from irradia.field.files import read_field
+from irradia.field.presets import preset
 from irradia.field.registry import print_spec, spec_to_dict
+from irradia.field.training.log import LogRow
 from irradia.formats.samples import SampleInfo, SampleWriter, open_samples
 from irradia.formats.samples_bin import write_samples_bin
 
@@ -439,3 +442,35 @@ def test_directions_are_named_with_a_size(text, encoding):
 def test_other_directions_are_refused(text):
     with pytest.raises(InputError):
         parse_direction(text)
+
+
+def test_a_preset_says_field_batches_rates_and_finishing(train, data, tmp_path):
+    quick = ("--steps", "3", "--batch-size", "64")
+    code, said = train(data, "-o", tmp_path / "a.safetensors.zst", "--preset", "triplane-50kB", quick=quick)
+    assert code == 0
+    assert said["spec"] == spec_to_dict(preset("triplane-50kB").spec)
+    assert said["batch_size"] == 64, "what is asked for is stronger"
+    assert read_field(tmp_path / "a.safetensors.zst").tensors, "its tables are codes"
+
+
+@pytest.mark.parametrize("more", [("--hidden-dim", "8"), ("--spec", "spec.json")])
+def test_a_preset_says_all_of_the_field(train, data, tmp_path, more, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "spec.json").write_text(print_spec(preset("triplane-50kB").spec))
+    code, said = train(data, "-o", tmp_path / "a.bin", "--preset", "triplane-50kB", *more, quick=())
+    assert code == 2
+    assert "says all of the field" in said["error"]["message"]
+
+
+def test_an_unknown_preset_names_the_nearest(train, data, tmp_path):
+    code, said = train(data, "-o", tmp_path / "a.safetensors", "--preset", "hash-200kb", quick=())
+    assert code == 2
+    assert "hash-200kB" in said["error"]["message"]
+
+
+def test_a_validation_that_has_become_worse_is_told():
+    errors = {1: 0.5, 2: 0.1, 3: 0.2}
+    rows = [LogRow(step, 0.0, 0, 1.0, psnr_db=20.0, relmse=error) for step, error in errors.items()]
+    assert "best at step 2" in (overfitting(rows) or "")
+    assert overfitting(rows[:2]) is None
+    assert overfitting([LogRow(1, 0.0, 0, 1.0)]) is None

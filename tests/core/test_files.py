@@ -76,8 +76,8 @@ def test_trouble_with_the_disk_is_explained(number):
 def test_a_name_that_is_taken_is_explained(tmp_path, place):
     (tmp_path / "text.txt").write_text("a file")
     (tmp_path / "folder").mkdir()
-    with pytest.raises(OSError, match="exists|directory") as caught, write_atomic(tmp_path / place) as stream:
-        stream.write(b"x")
+    with pytest.raises(OSError, match=r"exists|directory") as caught, write_atomic(tmp_path / place):
+        pass
     problem = place_problem(caught.value)
     assert problem is not None
     assert "stands where" in problem.message

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 SECTIONS = {
     "Results": ("--out", "--finish", "--precision", "--json"),
     "Field": (
-        *("--encoding", "--sh-mode", "--hidden-dim", "--hidden-layers", "--activation", "--head"),
+        *("--preset", "--encoding", "--sh-mode", "--hidden-dim", "--hidden-layers", "--activation", "--head"),
         *("--direction", "--n-levels", "--n-features", "--log2-hashmap-size", "--base-resolution"),
         *("--max-resolution", "--plane-res", "--features-per-plane", "--n-frequencies"),
         *("--include-identity", "--spec"),
@@ -82,6 +82,11 @@ _COUNT = options.Whole(1, 1 << 30)
     default="fp16",
     show_default=True,
     help="Of what isn't quantised.",
+)
+@click.option(
+    "--preset",
+    metavar="NAME",
+    help="A field of about a size with rates and finishing to match, such as hash-200kB.",
 )
 @click.option(
     "--encoding",
@@ -286,6 +291,7 @@ def make_job(
     out: Path,
     finishing: str | None,
     precision: str,
+    preset: str | None,
     sh_mode: bool,
     spec_file: Path | None,
     steps: int | None,
@@ -314,9 +320,9 @@ def make_job(
 
     if (data is None) == (data_flag is None):
         raise click.UsageError("Give the samples once: as DATA, or by -i.")
-    clash = sorted(given & set(SPEC_NAMES)) if spec_file is not None else []
-    if clash:
-        raise click.UsageError(f"--spec says all of the field, so --{clash[0].replace('_', '-')} can't.")
+    _one_word_on_the_field(given)
+    if preset is not None:
+        finishing = _as_preset(preset, given, choices, finishing)
     spec = {name: choices.pop(name) for name in SPEC_NAMES}
     samples = {field: choices.pop(name) for name, field in DATA_NAMES.items()}
     if steps is None and time_s is None:
@@ -324,7 +330,7 @@ def make_job(
     return TrainJob(
         data=data or data_flag,  # type: ignore[arg-type]  # one of them is there
         out=out,
-        choices=SpecChoices(spec_file=spec_file, sh_mode=sh_mode, **spec),
+        choices=SpecChoices(spec_file=spec_file, preset=preset, sh_mode=sh_mode, **spec),
         options=TrainOptions(
             steps=steps,
             time_s=time_s,
@@ -343,6 +349,29 @@ def make_job(
     )
 
 
+def _one_word_on_the_field(given: set[str]) -> None:
+    """Refuses a second word on what a preset or a spec file says."""
+    whole = [name for name in ("preset", "spec_file") if name in given]
+    clash = sorted(given & {*SPEC_NAMES, *whole[1:]})
+    if whole and clash:
+        flags = [name.removesuffix("_file").replace("_", "-") for name in (whole[0], clash[0])]
+        raise click.UsageError(f"--{flags[0]} says all of the field, so --{flags[1]} can't.")
+
+
+def _as_preset(name: str, given: set[str], choices: dict[str, Any], finishing: str | None) -> str | None:
+    """Gives ``choices`` a preset's batches and rates where none were asked for; returns its finishing."""
+    from irradia.field.presets import preset
+
+    found = preset(name)
+    learning = {
+        "batch_size": found.batch_size,
+        "lr_encoding": found.lr_encoding,
+        "lr_network": found.lr_network,
+    }
+    choices.update({key: value for key, value in learning.items() if key not in given})
+    return finishing or (f"int{found.bits}" if found.bits else None)
+
+
 def describe(result: dict[str, Any]) -> str:
     """What came of a training."""
     shipped = result["validation"]
@@ -355,6 +384,8 @@ def describe(result: dict[str, Any]) -> str:
         f"  PSNR {shipped['psnr_db']:.2f} dB, relMSE {shipped['relmse']:.3e}, MAE {shipped['mae']:.4g}, "
         f"mean ratio {shipped['mean_ratio']:.4f}{flag}",
     ]
+    if result["remark"]:
+        lines.append(f"  note: {result['remark']}")
     blocks = result["held_out_blocks"]
     if blocks is not None:
         lines.append(f"  in held-out space: PSNR {blocks['psnr_db']:.2f} dB, relMSE {blocks['relmse']:.3e}")

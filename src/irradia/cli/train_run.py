@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from irradia.field.training.jitter import Visibility
 
 _WAIT_S = 0.5
+_CLEARLY_WORSE = 1.25  # relMSE at the end over the best on the way
 
 
 def run_training(job: TrainJob, progress: Progress) -> dict[str, Any]:
@@ -60,6 +62,7 @@ def run_training(job: TrainJob, progress: Progress) -> dict[str, Any]:
         job.checkpoint.unlink(missing_ok=True)
     return {
         **_summary(job, finished, _shipped(job, finished, progress)),
+        "remark": overfitting(read_log(job.beside(".training.csv"), finished.step)),
         "backend": backend.name,
         "bytes": n_bytes,
         "stage_s": {name: round(seconds, 4) for name, seconds in progress.seconds.items()},
@@ -209,6 +212,17 @@ def _shipped(job: TrainJob, finished: Finished, progress: Progress) -> Figures:
         judge = replace(finished.judges.validation, scale=field.frame.scale)
         backend = find_backend(job.backend, field.spec, job.threads)
         return judge.figures(backend.evaluator(field.spec, field.parameters))
+
+
+def overfitting(rows: Sequence[LogRow]) -> str | None:
+    """What to say where validation has been clearly better before the end; None where it wasn't."""
+    judged = [(row.relmse, row.psnr_db, row.step) for row in rows if row.relmse and row.psnr_db is not None]
+    if not judged:
+        return None
+    relmse, psnr_db, step = min(judged)
+    if judged[-1][0] < _CLEARLY_WORSE * relmse:
+        return None
+    return f"validation was best at step {step:,}, {psnr_db:.1f} dB: try more samples, or --early-stop 3"
 
 
 def _summary(job: TrainJob, finished: Finished, shipped: Figures) -> dict[str, Any]:

@@ -24,6 +24,7 @@ class SpecChoices:
 
     Attributes:
         spec_file: JSON that says all of it; then no other may differ from its default.
+        preset: Name that does; see :mod:`irradia.field.presets`.
         encoding: Of positions.
         n_levels, n_features, log2_hashmap_size, base_resolution, max_resolution: Of ``hash``.
         plane_res, features_per_plane: Of ``triplane``.
@@ -52,6 +53,7 @@ class SpecChoices:
     activation: ActivationName = "relu"
     head: Head | None = None
     sh_mode: bool = False
+    preset: str | None = None
 
     def spec(self, info: SampleInfo) -> FieldSpec:
         """The field for a dataset.
@@ -71,6 +73,8 @@ class SpecChoices:
         if self.spec_file is not None:
             return read_spec(self.spec_file.read_text(encoding="utf-8"), where=str(self.spec_file))
         is_sh = info.kind == "sh"
+        if self.preset is not None:
+            return self._preset(is_sh)
         return FieldSpec(
             position=self._position(),
             direction=None if is_sh else parse_direction(self.direction),
@@ -80,6 +84,13 @@ class SpecChoices:
             head=self.head or ("linear" if is_sh else "exp"),
             mode=_SH_MODES[info.n_coefficients] if is_sh else "irradiance",
         )
+
+    def _preset(self, is_sh: bool) -> FieldSpec:
+        from irradia.field.presets import preset
+
+        if is_sh:
+            raise InputError("presets are of irradiance, found samples of SH coefficients", where="--preset")
+        return preset(self.preset or "").spec
 
     def _position(self) -> Encoding:
         from irradia.field.encodings import Frequency, HashGrid, TriPlane
