@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from irradia.bake.parallel import kernel_threads
 from irradia.bake.texels import TexelSet
 from irradia.core.errors import InputError
 from irradia.scene.layout import LightmapLayout
@@ -15,6 +16,7 @@ from irradia.transport.subsample_set import SubsampleSet
 _MAX_FRAGMENTS = (1 << 32) - 1  # of triangles in texels: they are numbered in 32 bits
 
 
+@kernel_threads()
 def rasterise(mesh: MergedMesh, layout: LightmapLayout) -> TexelSet:
     """Lists every texel that a lightmapped triangle touches, with eight sub-samples each.
 
@@ -69,6 +71,7 @@ def _fragments(
     return kernels.group_by_texel(pixels, triangle, layout.n_pages * height * width)
 
 
+@kernel_threads()
 def warm_up() -> None:
     """Compiles the kernels, or loads them from Numba's cache, on a single triangle."""
     from irradia.bake import raster_kernels as kernels

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from irradia.bake.parallel import kernel_threads
 from irradia.scene.merge import LEVEL_BITS, MergedMesh
 
 
@@ -36,4 +37,5 @@ class NearestSurface:
     def _ask(self, positions: NDArray[np.floating]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         from irradia.bake.datasets.nearest_kernels import nearest
 
-        return nearest(np.ascontiguousarray(positions, np.float64), self._corners, *self._tree)
+        with kernel_threads():
+            return nearest(np.ascontiguousarray(positions, np.float64), self._corners, *self._tree)
