@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,6 +16,8 @@ from irradia.field.field import Field
 from irradia.field.files import save_field
 from irradia.field.init import new_parameters
 from irradia.field.spec import FieldFrame, FieldSpec
+from irradia.formats.samples import SampleFile, SampleInfo
+from irradia.formats.samples_bin import write_samples_bin
 
 REFLECTANCE = 0.5
 FURNACE = "builtin:furnace"
@@ -47,6 +50,55 @@ def exact(tmp_path_factory):
 
 def _record(out) -> dict:
     return json.loads((out / "eval.json").read_text())
+
+
+def test_rays_come_in_fours(tmp_path, capfd):
+    weights = _write_field(tmp_path / "field.safetensors")
+    assert _evaluate(weights, tmp_path / "out", "--rays", "6") == 2
+    assert "--rays" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize(("quantity", "code"), [("full", 0), ("indirect", 2)])
+def test_a_bin_of_samples_is_of_the_light_that_is_said(tmp_path, quantity, code):
+    n = 64
+    rows = np.tile(np.float32([0, 0, 0, 0, 1, 0, E, E, E, 0]), (n, 1))
+    rows[:, :3] = np.random.default_rng(1).uniform(0.5 * BOX[0], 0.5 * BOX[1], (n, 3))
+    info = SampleInfo("volume", tuple(map(tuple, BOX.tolist())))
+    write_samples_bin(tmp_path / "d.bin", SampleFile(tmp_path / "d", info, rows))
+    weights = _write_field(tmp_path / "field.safetensors")
+    given = ("--samples", str(tmp_path / "d.bin"), "--quantity", quantity)
+    assert _evaluate(weights, tmp_path / "out", *given) == code
+
+
+def test_damaged_probes_are_baked_again_and_a_cache_may_be_unwritable(tmp_path, monkeypatch):
+    from irradia.cli import eval_baselines
+    from irradia.core.progress import silent_progress
+    from irradia.scene.load import load_scene
+
+    scene, kept = load_scene(FURNACE), tmp_path / "probes.npz"
+    monkeypatch.setattr(eval_baselines, "_RAYS_PER_PROBE", 16)
+    monkeypatch.setattr(eval_baselines, "cached_path", lambda *_: kept)
+    kept.write_bytes(b"no probes")
+    made = eval_baselines.sh_grid(scene, 1, 400, silent_progress())
+    again = eval_baselines.read_probes(kept)
+    monkeypatch.setattr(eval_baselines, "cached_path", lambda *_: weird / "probes.npz")
+    weird = tmp_path / "file"
+    weird.write_text("a file where the folder should be")
+    same = eval_baselines.sh_grid(scene, 1, 400, silent_progress())
+    assert made.n_bytes == same.n_bytes == 24 * len(again)
+
+
+def test_where_lights_are_live_all_rivals_have_as_many_samples():
+    from irradia.cli.eval_baselines import Baseline
+    from irradia.cli.eval_job import _as_noisy
+    from irradia.scene.load import load_scene
+    from irradia.scene.types import Light
+
+    rivals = [Baseline("field", "", 1), Baseline("visibility", "", 1, most_spp=4)]
+    dark = replace(load_scene(FURNACE), lights=())
+    live = replace(dark, lights=(Light("point", (1.0, 1.0, 1.0), mode="mixed"),))
+    assert [rival.most_spp for rival in _as_noisy(live, rivals)] == [4, 4]
+    assert _as_noisy(dark, rivals) == rivals
 
 
 def test_an_exact_field_shows_no_more_than_noise(exact):

@@ -56,6 +56,15 @@ def test_outside_its_lattice_a_grid_has_the_light_of_its_border():
     np.testing.assert_array_equal(far, grid.irradiance(_places()[-1:], normals))
 
 
+@pytest.mark.parametrize("brightness", [1e6, 1e-7])
+def test_light_beyond_what_halves_hold_is_kept_as_well(brightness):
+    normals = _normals(24)
+    plain = ShGrid.of(ORIGIN, SPACING, SHAPE, _coefficients(), 2).irradiance(_places(), normals)
+    coefficients = np.float32(brightness) * _coefficients()
+    found = ShGrid.of(ORIGIN, SPACING, SHAPE, coefficients, 2).irradiance(_places(), normals)
+    np.testing.assert_allclose(found, brightness * plain, rtol=2e-3)
+
+
 def test_light_is_never_negative():
     coefficients = np.zeros((24, 9, 3), np.float32)
     coefficients[:, 1] = 1.0

@@ -11,6 +11,7 @@ import pytest
 from irradia.core.rng import Seed
 from irradia.field.backend import Rates, StepOptions
 from irradia.field.backends import backend
+from irradia.field.cost import counted_cost
 from irradia.field.encoding import Array, Encoding, TensorSlot
 from irradia.field.encodings import Identity
 from irradia.field.field import Field
@@ -69,6 +70,14 @@ def test_a_new_encoding_trains_and_evaluates(spec, make_batch):
     field = Field(spec, frame, inference_parameters(stepper.state(), options))
     below, above = field.irradiance(np.float32([[0.5, 0.2, 0.5], [0.5, 0.8, 0.5]]), batch.normal[:2])
     assert above.mean() > 3.0 * below.mean()
+
+
+def test_a_new_encoding_counts_what_a_query_costs_or_nobody_does(spec, monkeypatch):
+    assert counted_cost(spec) is None
+    monkeypatch.setattr(Ladder, "cost", lambda self: (1, 1))
+    cost = counted_cost(spec)
+    assert cost is not None
+    assert (cost.encoding_flops, cost.encoding_values) == (1, 1)
 
 
 def test_a_new_encoding_is_printed_and_read(spec):

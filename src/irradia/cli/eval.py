@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from irradia.cli import options
+from irradia.cli.bin_samples import bin_options, bin_sample_options
 from irradia.cli.output import finish
 from irradia.cli.sections import SectionedCommand
 
@@ -16,7 +17,7 @@ BASELINES = ("sh1", "sh2", "visibility", "lightmap")
 SECTIONS = {
     "Results": ("--out", "--json"),
     "Pictures": ("--camera", "--reference-spp", "--spp", "--pixels", "--exposure"),
-    "In space": ("--samples", "--points", "--rays"),
+    "In space": ("--samples", "--coefficients", "--quantity", "--points", "--rays"),
     "Beside it": ("--baselines",),
     "The scene": (
         *("--scene", "--env", "--env-rotation", "--env-strength", "--env-color", "--sky"),
@@ -87,6 +88,7 @@ class Names(click.ParamType):
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
     help="Judge in space by this dataset, which the field wasn't trained from.",
 )
+@bin_sample_options
 @click.option(
     "--points",
     type=options.Whole(0, 1 << 24),
@@ -101,7 +103,7 @@ class Names(click.ParamType):
     default=1024,
     show_default=True,
     metavar="N",
-    help="Rays per place.",
+    help="Rays per place, a multiple of 4.",
 )
 @click.option(
     "--baselines",
@@ -144,6 +146,8 @@ def _job(
     samples: Path | None,
     points: int,
     rays: int,
+    coefficients: str | None,
+    quantity: str | None,
     baselines: tuple[str, ...],
     material_override: tuple[str, ...],
     ies: tuple[str, ...],
@@ -166,7 +170,7 @@ def _job(
         overrides=material_override,
         ies=ies,
         pictures=PictureOptions(cameras, reference_spp, spp, pixels, exposure),
-        space=SpaceOptions(samples, points, rays),
+        space=SpaceOptions(samples, points, rays, bin_options(coefficients, quantity, samples)),
         baselines=baselines,
         seed=seed,
         device=device,  # type: ignore[arg-type]
@@ -183,9 +187,10 @@ def describe(record: dict[str, Any]) -> str:
         cells = (_number(rival["flip"], 10, ".4f"), _number(mse, 13, ".3e"), _number(leak, 11, ".2f"))
         rows.append(f"{rival['name']:<32} {rival['n_bytes']:>10} {' '.join(cells)}")
     query = record["query"]
+    flops, n_bytes = (_number(query[name], 0, ".0f") for name in ("flops", "encoding_bytes"))
     rows.append(
-        f"{query['million_per_second']:.2f} M queries/s here; {query['flops']} operations and "
-        f"{query['encoding_bytes']:.0f} bytes of the encoding a query"
+        f"{query['million_per_second']:.2f} M queries/s here; {flops} operations and "
+        f"{n_bytes} bytes of the encoding a query"
     )
     return "\n".join(rows)
 

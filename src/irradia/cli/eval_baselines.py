@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from irradia import __version__
 from irradia.core.cache import cached_path
+from irradia.core.errors import InputError
 from irradia.core.progress import Progress
 from irradia.field.baselines import ShGrid, probe_bytes, spacing_for
 from irradia.formats.probes import ProbeGrid, ProbeSet, read_probes, write_probes
@@ -122,18 +124,20 @@ def _baked(scene: Scene, edge: int, progress: Progress, seed: int) -> tuple[Bake
 
 
 def _probes(scene: Scene, n_probes: int, progress: Progress, seed: int) -> ProbeSet:
-    """Baked probes in a lattice, or those in the cache."""
+    """Baked probes in a lattice, or those in the cache; a damaged or unwritable one does no harm."""
     from irradia.bake.probes import bake_probes
     from irradia.bake.probes.options import ProbeOptions
 
     path = cached_path("probes", _key(scene, n_probes, seed), ".npz")
     if path.exists():
-        return read_probes(path)
+        with contextlib.suppress(OSError, InputError):
+            return read_probes(path)
     low, high = _box(scene)
     spacing_m = spacing_for(high - low, n_probes)
     options = ProbeOptions("grid", spacing_m, samples=_RAYS_PER_PROBE, seed=seed)
     probes = bake_probes(scene, None, None, options, progress)
-    write_probes(path, probes)
+    with contextlib.suppress(OSError):
+        write_probes(path, probes)
     return probes
 
 

@@ -16,7 +16,7 @@ from irradia.core import provenance
 from irradia.core.colour import automatic_exposure_ev, picture_srgb8
 from irradia.core.files import write_text_atomic
 from irradia.core.progress import Progress
-from irradia.field.cost import query_cost
+from irradia.field.cost import counted_cost
 from irradia.field.native_fields import StoredField
 from irradia.field.registry import spec_to_dict
 from irradia.report import Comparison, EvaluationData, FieldSummary, Rival, text, write_evaluation
@@ -56,7 +56,7 @@ def evaluation_record(job: EvalJob, found: Evaluation, progress: Progress, wall_
     """Everything as plain values."""
     from irradia.transport.backend import device
 
-    field, cost = found.stored.field, query_cost(found.stored.field.spec)
+    field = found.stored.field
     origin = provenance.record(
         "eval",
         job.config(),
@@ -79,9 +79,7 @@ def evaluation_record(job: EvalJob, found: Evaluation, progress: Progress, wall_
         "rivals": [rival_record(rival) for rival in found.rivals],
         "query": {
             "million_per_second": found.queries_per_second / 1e6,
-            "flops": cost.flops,
-            "encoding_bytes": cost.encoding_bytes(encoding_bits(found.stored)),
-            "network_bytes": cost.network_values * _PLAIN_BITS[found.stored.precision] / 8,
+            **query_record(found.stored),
         },
         "stage_s": {name: round(seconds, 4) for name, seconds in progress.seconds.items()},
         "peak_memory_bytes": peak_memory_bytes(),
@@ -114,7 +112,19 @@ def exposure_of(job: EvalJob, found: Evaluation, number: int) -> float:
     return automatic_exposure_ev(found.references[number].mean) if chosen is None else chosen
 
 
-def encoding_bits(stored: StoredField) -> int:
+def query_record(stored: StoredField) -> dict[str, float | None]:
+    """What a query costs by formula, as plain values; None where nobody has counted."""
+    cost = counted_cost(stored.field.spec)
+    if cost is None:
+        return dict.fromkeys(("flops", "encoding_bytes", "network_bytes"))
+    return {
+        "flops": cost.flops,
+        "encoding_bytes": cost.encoding_bytes(_encoding_bits(stored)),
+        "network_bytes": cost.network_values * _PLAIN_BITS[stored.precision] / 8,
+    }
+
+
+def _encoding_bits(stored: StoredField) -> int:
     """Of a value of the encoding, the widest where they differ."""
     if stored.tensors:
         return max(tensor.bits for tensor in stored.tensors.values())
@@ -123,7 +133,7 @@ def encoding_bits(stored: StoredField) -> int:
 
 def _facts(found: Evaluation) -> tuple[tuple[str, str], ...]:
     field, judged = found.stored.field, found.rivals[0]
-    cost = query_cost(field.spec)
+    cost = query_record(found.stored)
     facts = [
         ("Encoding", field.spec.position.name),
         ("Network", f"{field.spec.n_hidden_layers} × {field.spec.width}, {field.spec.activation}"),
@@ -131,8 +141,8 @@ def _facts(found: Evaluation) -> tuple[tuple[str, str], ...]:
         ("Size as shipped", text.size(judged.n_bytes)),
         ("Light", field.frame.quantity),
         ("Queries here", text.rate(found.queries_per_second, "queries/s")),
-        ("Operations a query", text.count(cost.flops)),
-        ("Bytes touched a query, encoding", text.count(cost.encoding_bytes(encoding_bits(found.stored)))),
+        ("Operations a query", _count(cost["flops"])),
+        ("Bytes touched a query, encoding", _count(cost["encoding_bytes"])),
     ]
     if judged.leaks is not None:
         ratio = judged.leaks.ratio
@@ -204,3 +214,7 @@ def _finite(value: Any) -> Any:
     if isinstance(value, dict):
         return {key: _finite(each) for key, each in value.items()}
     return [_finite(each) for each in value] if isinstance(value, (list, tuple)) else value
+
+
+def _count(value: float | None) -> str:
+    return "–" if value is None else text.count(value)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -143,11 +143,20 @@ def evaluate(
         Baseline("field", "neural field", n_bytes, field.irradiance),
         *_baselines(job, scene, n_bytes, progress),
     ]
+    shown = _as_noisy(scene, shown)
     rivals = tuple(_judge(job, scene, each, cameras, references, samples, progress) for each in shown)
     with progress.stage("queries"):
         evaluator = backend(field.backend_name, field.spec).evaluator(field.spec, field.parameters)
         speed = queries_per_second(evaluator, directional=field.spec.mode == "irradiance")
     return Evaluation(scene, stored, cameras, references, rivals, speed)
+
+
+def _as_noisy(scene: Scene, rivals: list[Baseline]) -> list[Baseline]:
+    """The rivals with the samples per pixel of the least where lights are live: these are noisy for all."""
+    if all(light.mode in ("baked", "off") for light in scene.lights):
+        return rivals
+    least = min(rival.most_spp for rival in rivals)
+    return [replace(rival, most_spp=least) for rival in rivals]
 
 
 def _judge(

@@ -8,6 +8,8 @@ from typing import Any
 
 from irradia.cli.lighting import LightOptions
 from irradia.core.device import DeviceChoice
+from irradia.core.errors import InputError
+from irradia.formats.samples_bin import BinOptions
 from irradia.scene.load import LoadOptions
 
 BASELINES = ("sh1", "sh2", "visibility", "lightmap")
@@ -20,7 +22,8 @@ class PictureOptions:
     Attributes:
         cameras: As ``--camera`` names them; none for all of the scene's, or one that frames it.
         reference_spp: Samples per pixel of the references, two halves together.
-        spp: Of what is judged: its light is without noise, so that this is for edges alone.
+        spp: Of what is judged: it smooths edges, and the noise of lights that are lit live, of which each
+            sample asks one.
         n_pixels: About how many each picture has; its shape is the camera's.
         exposure_ev: Stops; None for automatic exposure of each reference.
     """
@@ -39,12 +42,25 @@ class SpaceOptions:
     Attributes:
         samples: A dataset to judge by; None draws places of its own.
         count: How many are drawn, half of them within 5 cm of surfaces.
-        rays: Per place.
+        rays: Per place, a multiple of 4.
+        bin_samples: What ``samples`` don't say of themselves where they are a ``.bin``.
+
+    Raises:
+        InputError: ``rays`` is no multiple of 4.
     """
 
     samples: Path | None = None
     count: int = 16_384
     rays: int = 1024
+    bin_samples: BinOptions = field(default_factory=BinOptions)
+
+    def __post_init__(self) -> None:
+        if self.rays < 4 or self.rays % 4:
+            raise InputError(
+                f"expected a multiple of 4, found {self.rays}",
+                where="--rays",
+                fix="Their noise is told from four quarters.",
+            )
 
 
 @dataclass(frozen=True)

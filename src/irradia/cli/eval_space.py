@@ -16,7 +16,7 @@ from irradia.core.cache import cached_arrays
 from irradia.core.errors import InputError
 from irradia.core.progress import Progress
 from irradia.core.rng import Seed
-from irradia.core.sh import irradiance
+from irradia.core.sh import light_on
 from irradia.field.evaluation import NEAR_WALL_M
 from irradia.scene.fingerprint import fingerprint
 from irradia.scene.merge import MergedMesh, merge
@@ -148,7 +148,7 @@ def _from_file(job: EvalJob, scene: Scene, field: Field) -> SpaceSamples:
     path = job.space.samples
     if path is None:
         raise ValueError("no dataset was given")
-    file = open_samples(path)
+    file = open_samples(path, job.space.bin_samples)
     if file.info.quantity != field.frame.quantity:
         raise InputError(
             f"expected samples of {field.frame.quantity} light as the field holds, "
@@ -168,7 +168,5 @@ def _light_of(file: SampleFile, seed: Seed) -> tuple[F32, F32]:
         return np.array(file.normals, np.float32), np.array(file.values, np.float32)
     normals = seed.numpy().standard_normal((len(file), 3)).astype(np.float32)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    series = np.zeros((len(file), 9, 3), np.float32)
-    given = np.array(file.values, np.float32).reshape(len(file), -1, 3)
-    series[:, : given.shape[1]] = given
-    return normals, irradiance(series, normals).astype(np.float32)
+    light = light_on(file.values.reshape(len(file), -1, 3), normals)
+    return normals, light.astype(np.float32)

@@ -223,13 +223,10 @@ def _losses(board: _Board) -> dict[str, list[tuple[int, float]]]:
 
 def _formula_cost(path: Path) -> Record:
     """What a query costs by formula."""
-    from irradia.cli.eval_files import encoding_bits
-    from irradia.field.cost import query_cost
+    from irradia.cli.eval_files import query_record
     from irradia.field.files import read_field
 
-    stored = read_field(path)
-    cost = query_cost(stored.field.spec)
-    return {"flops": cost.flops, "encoding_bytes": cost.encoding_bytes(encoding_bits(stored))}
+    return dict(query_record(read_field(path)))
 
 
 def _summary(sweep: Sweep, board: _Board, complete: bool) -> dict[str, Any]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irradia.core.errors import InputError
-from irradia.core.sh import irradiance_weights
+from irradia.core.sh import light_on
 
 F32 = NDArray[np.float32]
 _POINTS_AT_ONCE = 1 << 15  # keeps what is gathered in cache
@@ -22,19 +23,23 @@ class ShGrid:
     Attributes:
         origin: (3,) of the first probe, metres.
         spacing: (3,) metres.
-        coefficients: (nz, ny, nx, k, 3) half floats of radiance, k = 4 or 9 in the project's order.
+        coefficients: (nz, ny, nx, k, 3) half floats, k = 4 or 9 in the project's order.
+        scale: A power of two; times the coefficients it is radiance.
     """
 
     origin: F32
     spacing: F32
     coefficients: NDArray[np.float16]
+    scale: float = 1.0
 
     @staticmethod
     def of(origin: F32, spacing: F32, shape: tuple[int, int, int], coefficients: F32, order: int) -> ShGrid:
         """Rounds probes x + nx · (y + ny · z), (N, 9, 3), to halves of SH of an order, 1 or 2."""
         nx, ny, nz = shape
         kept = coefficients[:, : n_coefficients(order)]
-        return ShGrid(origin, spacing, kept.reshape(nz, ny, nx, -1, 3).astype(np.float16))
+        scale = _half_scale(kept)
+        halves = (kept / np.float32(scale)).astype(np.float16)
+        return ShGrid(origin, spacing, halves.reshape(nz, ny, nx, -1, 3), scale)
 
     @property
     def n_bytes(self) -> int:
@@ -65,9 +70,14 @@ class ShGrid:
             x, y, z = np.minimum(low + step, last.astype(np.int64)).T
             weight = np.prod(np.where(step, fraction, 1.0 - fraction), axis=1, dtype=np.float32)
             series += weight[:, None] * table[x + nx * (y + ny * z)].astype(np.float32)
-        cosine = irradiance_weights(normals)[:, :k].astype(np.float32)
-        light = np.einsum("nk,nkc->nc", cosine, series.reshape(-1, k, 3))
-        return np.maximum(light, np.float32(0.0))
+        light = light_on(series.reshape(-1, k, 3), normals) * self.scale
+        return light.astype(np.float32)
+
+
+def _half_scale(values: F32) -> float:
+    """The power of two by which values become those that halves hold best: up to 2¹⁵."""
+    largest = float(np.abs(values).max(initial=0.0))
+    return math.ldexp(1.0, math.frexp(largest)[1] - 15) if largest > 0.0 else 1.0
 
 
 def n_coefficients(order: int) -> int:

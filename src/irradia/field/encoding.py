@@ -78,6 +78,10 @@ class Encoding(ABC):
         del x, gradient
         return np.zeros_like(parameters)
 
+    def cost(self) -> tuple[int, int] | None:
+        """Operations, and parameters read, of one query; None where nobody has counted them."""
+        return None
+
     def spec(self) -> dict[str, Any]:
         """Plain values that :func:`irradia.field.registry.encoding_from_spec` makes it from again."""
         return {"type": self.name, **{f.name: getattr(self, f.name) for f in fields(self)}}
