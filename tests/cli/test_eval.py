@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
 from dataclasses import replace
@@ -10,6 +11,8 @@ import numpy as np
 import pytest
 
 from irradia.cli import app
+from irradia.cli.eval_baselines import make_baseline
+from irradia.core.progress import Progress
 from irradia.core.rng import Seed
 from irradia.field.encodings import Identity
 from irradia.field.field import Field
@@ -18,6 +21,7 @@ from irradia.field.init import new_parameters
 from irradia.field.spec import FieldFrame, FieldSpec
 from irradia.formats.samples import SampleFile, SampleInfo
 from irradia.formats.samples_bin import write_samples_bin
+from irradia.scene.load import load_scene
 
 REFLECTANCE = 0.5
 FURNACE = "builtin:furnace"
@@ -214,6 +218,14 @@ def test_baselines_that_so_few_bytes_cannot_hold_are_left_out_with_a_note(tmp_pa
     assert _evaluate(weights, tmp_path / "out", "--baselines", "visibility,lightmap") == 0
     assert [rival["key"] for rival in _record(tmp_path / "out")["rivals"]] == ["field"]
     assert "too few for the baseline visibility" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("key", ["sh1", "sh2", "visibility", "lightmap"])
+def test_baselines_of_very_many_bytes_are_left_out_with_a_note(key):
+    told = io.StringIO()
+    made = make_baseline(key, load_scene("builtin:cornell"), 24 << 20, Progress(told), 0)
+    assert made is None
+    assert f"no baseline {key}" in told.getvalue()
 
 
 @pytest.mark.parametrize("names", ["sh3", "sh1,", "every"])

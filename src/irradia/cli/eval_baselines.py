@@ -29,6 +29,7 @@ _VERSION = 1
 _RAYS_PER_PROBE = 1024
 _SIGHT_BYTES = 16 * 16 * 2 * 2  # the octahedral map of distances beside each probe, in halves
 _LIGHTMAP_SAMPLES = 256
+MOST_BYTES = 4 << 20  # of a baseline: below it stays the number of probes that a grid may have
 _SIGHTED_SPP = 4
 _SMALLEST_EDGE = 32
 _LEAST_BYTES = {
@@ -61,7 +62,10 @@ class Baseline:
 
 
 def make_baseline(key: str, scene: Scene, n_bytes: int, progress: Progress, seed: int) -> Baseline | None:
-    """One of :data:`BASELINES`, or None where so few bytes can't hold it."""
+    """One of :data:`BASELINES`, or None where so few bytes can't hold it or so many would take too long."""
+    if n_bytes > MOST_BYTES:
+        progress.say(f"note: no baseline {key} of {n_bytes:,} bytes: more than {MOST_BYTES:,} take too long")
+        return None
     if n_bytes < _LEAST_BYTES[key]:
         progress.say(f"note: {n_bytes} bytes are too few for the baseline {key}")
         return None
