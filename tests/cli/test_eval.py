@@ -12,6 +12,7 @@ import pytest
 
 from irradia.cli import app
 from irradia.cli.eval_baselines import make_baseline
+from irradia.cli.lighting import LightOptions, light_scene
 from irradia.core.progress import Progress
 from irradia.core.rng import Seed
 from irradia.field.encodings import Identity
@@ -226,6 +227,13 @@ def test_baselines_of_very_many_bytes_are_left_out_with_a_note(key):
     made = make_baseline(key, load_scene("builtin:cornell"), 24 << 20, Progress(told), 0)
     assert made is None
     assert f"no baseline {key}" in told.getvalue()
+
+
+def test_a_lightmap_so_small_that_charts_do_not_fit_is_left_out_with_a_note():
+    told = io.StringIO()
+    scene = light_scene(load_scene("builtin:blocks"), LightOptions())
+    assert make_baseline("lightmap", scene, 4096, Progress(told), 0) is None
+    assert "no lightmap of 4,096 bytes" in told.getvalue()
 
 
 @pytest.mark.parametrize("names", ["sh3", "sh1,", "every"])

@@ -70,7 +70,7 @@ def make_baseline(key: str, scene: Scene, n_bytes: int, progress: Progress, seed
         progress.say(f"note: {n_bytes} bytes are too few for the baseline {key}")
         return None
     if key == "lightmap":
-        return small_lightmap(scene, n_bytes, progress, seed)
+        return _lightmap_if_charts_fit(scene, n_bytes, progress, seed)
     if key == "visibility":
         return sighted_grid(scene, n_bytes, progress, seed)
     return sh_grid(scene, int(key.removeprefix("sh")), n_bytes, progress, seed)
@@ -109,6 +109,16 @@ def small_lightmap(scene: Scene, n_bytes: int, progress: Progress, seed: int = 0
         edge = better
         baked, size = _baked(scene, edge, progress, seed)
     return Baseline("lightmap", f"lightmap, {edge}²", size, lightmap=baked)
+
+
+def _lightmap_if_charts_fit(scene: Scene, n_bytes: int, progress: Progress, seed: int) -> Baseline | None:
+    try:
+        return small_lightmap(scene, n_bytes, progress, seed)
+    except InputError as error:
+        if error.where != "--resolution":
+            raise
+        progress.say(f"note: no lightmap of {n_bytes:,} bytes: {error.message}")
+        return None
 
 
 def _baked(scene: Scene, edge: int, progress: Progress, seed: int) -> tuple[BakedLight, int]:
