@@ -178,6 +178,7 @@ def test_a_run_that_fails_is_told_and_the_others_go_on(sweep, data, grid, tmp_pa
     code, said = sweep(data, "-o", tmp_path / "out", "--grid", grid(content))
     assert code == 2
     assert [row["status"] for row in said["rows"]] == ["done", "failed"]
+    assert not said["ok"]
     assert "above zero" in said["failed"][0]["error"]
 
 
