@@ -61,7 +61,7 @@ def comparison_section(view: Comparison, index: int) -> str:
     <span class="tag tag-left">{label}</span><span class="tag tag-right">Reference, diffuse</span>
   </div>
   <p class="quiet hint">Drag the line, scroll to zoom, drag to pan, double-click to fit.
-    Keys 1 to 5 switch, arrows move the line.</p>
+    Keys 1 to {len(layers) + 1} switch, arrows move the line.</p>
   <div class="columns">
     <div>{_beside(view)}</div>
     <div><h3>{label} against the reference</h3>{_scores(view)}</div>
