@@ -42,8 +42,13 @@ def plot_flip_over_bytes(rows: Sequence[Row], path: Path) -> None:
         axes.minorticks_off()
         axes.grid(color="#eeeeee")
     panels[0][0].set_ylabel("HDR-FLIP")
-    panels[0][-1].legend(frameon=False, fontsize=8)
-    figure.tight_layout()
+    named = {
+        name: line for axes in panels[0] for line, name in zip(*axes.get_legend_handles_labels(), strict=True)
+    }
+    figure.tight_layout(rect=(0.0, 0.08, 1.0, 1.0))
+    figure.legend(
+        named.values(), named.keys(), loc="lower center", ncols=len(named), frameon=False, fontsize=8
+    )
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, metadata={"Date": None})
     plt.close(figure)
