@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -59,12 +59,7 @@ def set_up(
     traced = _indices(valid if options.cached else chosen)
     queues = _queues(light, chosen, selection, progress)
     with progress.stage("kernels"):
-        nothing = light.cache_of_nothing(options.cached, one_bounce=options.one_bounce)
-        light.warm_up(_lanes(light, traced), nothing)
-        for queue in queues:
-            if len(queue):
-                light.warm_up(_lanes(light, queue), nothing, last_epoch=True)
-        del nothing
+        _compile(light, traced, queues, options)
     meter = NoiseMeter(texels.pixel, texels.chart, (texels.n_pages, texels.height_px, texels.width_px))
     samples = options.planned_samples
     plan = plan_epochs(
@@ -90,6 +85,15 @@ def set_up(
     return LightmapBake(
         options, mesh, layout, texels, light, footprints, bake, meter, scene.lights, masks, region
     )
+
+
+def _compile(light: TexelLight, traced: U32, queues: Sequence[U32], options: BakeOptions) -> None:
+    """Compiles what the passes will run; nothing stays on the device but the kernels."""
+    nothing = light.cache_of_nothing(options.cached, one_bounce=options.one_bounce)
+    light.warm_up(_lanes(light, traced), nothing)
+    for queue in queues:
+        if len(queue):
+            light.warm_up(_lanes(light, queue), nothing, last_epoch=True)
 
 
 def cover(scene: Scene, layout: LightmapLayout) -> tuple[MergedMesh, TexelSet]:

@@ -6,13 +6,12 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from irradia.cli.eval import BASELINES
 from irradia.cli.lighting import LightOptions
 from irradia.core.device import DeviceChoice
 from irradia.core.errors import InputError
 from irradia.formats.samples_bin import BinOptions
 from irradia.scene.load import LoadOptions
-
-BASELINES = ("sh1", "sh2", "visibility", "lightmap")
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from irradia.cli.sections import SectionedCommand
 
 if TYPE_CHECKING:
     from irradia.cli.train_job import TrainJob
+    from irradia.field.training.options import TrainOptions
 
 SECTIONS = {
     "Results": ("--out", "--finish", "--precision", "--json"),
@@ -316,7 +317,6 @@ def make_job(
     """
     from irradia.cli.train_job import TrainJob
     from irradia.cli.train_spec import SpecChoices
-    from irradia.field.training.options import DEFAULT_STEPS, DataOptions, TrainOptions
 
     if (data is None) == (data_flag is None):
         raise click.UsageError("Give the samples once: as DATA, or by -i.")
@@ -324,19 +324,11 @@ def make_job(
     if preset is not None:
         finishing = _as_preset(preset, given, choices, finishing)
     spec = {name: choices.pop(name) for name in SPEC_NAMES}
-    samples = {field: choices.pop(name) for name, field in DATA_NAMES.items()}
-    if steps is None and time_s is None:
-        steps = DEFAULT_STEPS
     return TrainJob(
         data=data or data_flag,  # type: ignore[arg-type]  # one of them is there
         out=out,
         choices=SpecChoices(spec_file=spec_file, preset=preset, sh_mode=sh_mode, **spec),
-        options=TrainOptions(
-            steps=steps,
-            time_s=time_s,
-            data=DataOptions(**samples, memory_bytes=memory_mib * _MEBIBYTE),
-            **choices,
-        ),
+        options=_train_options(steps, time_s, memory_mib, choices),
         backend=backend,
         threads=threads,
         validation=validation,
@@ -347,6 +339,18 @@ def make_job(
         precision=precision,  # type: ignore[arg-type]
         bin_samples=bin_options(coefficients, quantity, data or data_flag, validation),
     )
+
+
+def _train_options(
+    steps: int | None, time_s: float | None, memory_mib: int, choices: dict[str, Any]
+) -> TrainOptions:
+    from irradia.field.training.options import DEFAULT_STEPS, DataOptions, TrainOptions
+
+    samples = {field: choices.pop(name) for name, field in DATA_NAMES.items()}
+    data = DataOptions(**samples, memory_bytes=memory_mib * _MEBIBYTE)
+    if steps is None and time_s is None:
+        steps = DEFAULT_STEPS
+    return TrainOptions(steps=steps, time_s=time_s, data=data, **choices)
 
 
 def _one_word_on_the_field(given: set[str]) -> None:

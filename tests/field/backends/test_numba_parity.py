@@ -8,62 +8,26 @@ import numpy as np
 import pytest
 
 from irradia.core.errors import InputError
-from irradia.core.rng import Seed
 from irradia.field.activations import ACTIVATIONS
-from irradia.field.backend import AdamOptions, Batch, LossName, Parameters, Rates, StepOptions, TrainState
+from irradia.field.backend import Batch, LossName
 from irradia.field.backends.numba_backend import NumbaBackend
 from irradia.field.encodings import Composite, HashGrid, Identity, SphericalHarmonics, TriPlane
 from irradia.field.heads import HEADS
-from irradia.field.init import new_parameters
-from irradia.field.network import evaluate, loss_and_gradients
 from irradia.field.registry import ENCODINGS
 from irradia.field.spec import FieldSpec
 
+from . import parity
+
 N = 300  # one tile and a part of another
 GRID = HashGrid(3, 6, 2, 3, 11)
-STILL = Rates(0.0, 0.0)
-# With β1 = 0 the first moment after a step is the gradient.
-ADAM = AdamOptions(beta1=0.0)
-
-
-def parameters_of(spec: FieldSpec) -> Parameters:
-    """Large enough that nothing is nearly linear, biases not 0."""
-    rng = np.random.default_rng(7)
-    parameters = new_parameters(spec, Seed(3))
-    for name, values in parameters.items():
-        if not name.endswith("weight"):
-            parameters[name] = rng.uniform(-0.5, 0.5, values.shape).astype(np.float32)
-    return parameters
-
-
-def gradients_of(
-    spec: FieldSpec, parameters: Parameters, batch: Batch, loss: LossName = "relative_l2", threads: int = 2
-) -> tuple[float, Parameters]:
-    zeros = {name: np.zeros_like(values) for name, values in parameters.items()}
-    options = StepOptions(loss, encoding_adam=ADAM, network_adam=ADAM, average=0.0)
-    stepper = NumbaBackend(threads).stepper(spec, TrainState(parameters, {}, zeros, zeros, 0), options)
-    return stepper.step(batch, STILL), stepper.state().first
 
 
 def check_gradients(spec: FieldSpec, batch: Batch, loss: LossName = "relative_l2") -> None:
-    """Within a few roundings of the largest gradient in each array."""
-    parameters = parameters_of(spec)
-    exact = {name: values.astype(np.float64) for name, values in parameters.items()}
-    expected_loss, expected = loss_and_gradients(spec, exact, batch, loss)
-    found_loss, found = gradients_of(spec, parameters, batch, loss)
-    assert found_loss == pytest.approx(expected_loss, rel=2e-6)
-    assert found.keys() == expected.keys()
-    for name, gradient in expected.items():
-        tolerance = 4e-6 * np.abs(gradient).max()
-        np.testing.assert_allclose(found[name], gradient, rtol=0.0, atol=tolerance, err_msg=name)
+    parity.check_gradients(NumbaBackend(2), spec, batch, loss, loss_tolerance=2e-6)
 
 
-def check_values(spec: FieldSpec, batch: Batch, rtol: float = 4e-6) -> None:
-    parameters = parameters_of(spec)
-    exact = {name: values.astype(np.float64) for name, values in parameters.items()}
-    expected = evaluate(spec, exact, batch.x, batch.normal)
-    found = NumbaBackend(2).evaluator(spec, parameters)(batch.x, batch.normal)
-    np.testing.assert_allclose(found, expected, rtol=rtol, atol=rtol * np.abs(expected).max())
+def check_values(spec: FieldSpec, batch: Batch) -> None:
+    parity.check_values(NumbaBackend(2), spec, batch)
 
 
 def test_every_encoding_has_a_fast_version():
@@ -172,10 +136,10 @@ def test_an_evaluation_of_many_chunks_is_whole(make_batch, monkeypatch):
 def test_no_points_give_no_outputs():
     spec = FieldSpec(GRID, Identity(), width=8)
     none = np.zeros((0, 3), np.float32)
-    assert NumbaBackend(1).evaluator(spec, parameters_of(spec))(none, none).shape == (0, 3)
+    assert NumbaBackend(1).evaluator(spec, parity.parameters_of(spec))(none, none).shape == (0, 3)
 
 
 def test_normals_that_are_missing_are_not_made_of_positions():
     spec = FieldSpec(GRID, Identity(), width=8)
     with pytest.raises(InputError, match="normals"):
-        NumbaBackend(1).evaluator(spec, parameters_of(spec))(np.zeros((5, 3), np.float32), None)
+        NumbaBackend(1).evaluator(spec, parity.parameters_of(spec))(np.zeros((5, 3), np.float32), None)
