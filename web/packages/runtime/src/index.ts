@@ -86,3 +86,12 @@ export {
   probeCoefficients,
   readProbes,
 } from "./scene/probes.js";
+export type {
+  LightInput,
+  LightShader,
+  LightView,
+  ShaderCost,
+  ShaderLanguage,
+  ShaderTexture,
+  ShaderUniforms,
+} from "./shaders/light-shader.js";
