@@ -14,7 +14,7 @@ PYTEST_ARGS ?=
 help:
 	@echo "make demo    bake our own scene and write everything, with report, to $(OUT)"
 	@echo "make test    run every test"
-	@echo "make check   lint, types and layers"
+	@echo "make check   lint, types and layers, Python and TypeScript"
 	@echo "make bench   run the benchmarks, peers included"
 	@echo "make setup   only what running needs; the others call it"
 
@@ -35,6 +35,7 @@ check: setup-dev
 	@$(BIN)/ruff format --check .
 	@$(BIN)/pyright
 	@$(BIN)/lint-imports
+	@npm run --silent --prefix web check
 
 bench: setup-dev
 	@set -e; for file in bench/*.py; do echo "== $$file"; $(BIN)/python $$file; done
