@@ -31,6 +31,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "sweep": ("sweep", "Train a grid of fields and compare them."),
     "eval": ("eval", "A field against the path-traced reference."),
     "export": ("export", "Write a field in another format, smaller, or into a baked scene."),
+    "view": ("view", "Show baked light in the browser."),
     "compare": ("compare", "Metrics between two images or lightmaps."),
 }
 

@@ -6,6 +6,7 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -80,14 +81,8 @@ def look_at(eye: F64, target: F64) -> F64:
 
 
 def save_camera(camera: Camera, path: Path | str) -> None:
-    """Writes a camera as JSON: ``world_from_camera`` (rows), ``yfov_deg``, ``aspect``, ``name``."""
-    content = {
-        "world_from_camera": camera.world_from_camera.tolist(),
-        "yfov_deg": math.degrees(camera.yfov_rad),
-        "aspect": camera.aspect,
-        "name": camera.name,
-    }
-    write_text_atomic(path, json.dumps(content, indent=2) + "\n")
+    """Writes a camera as JSON: :func:`camera_record`."""
+    write_text_atomic(path, json.dumps(camera_record(camera), indent=2) + "\n")
 
 
 def load_camera(path: Path | str) -> Camera:
@@ -98,16 +93,42 @@ def load_camera(path: Path | str) -> Camera:
     """
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
-        pose = np.array(content["world_from_camera"], np.float64)
-        yfov_rad = math.radians(float(content["yfov_deg"]))
-        aspect = float(content.get("aspect", DEFAULT_ASPECT))
-        name = str(content.get("name", ""))
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError) as error:
         raise _no_camera(path, f"{type(error).__name__}: {error}") from error
+    return camera_from_record(content, str(path))
+
+
+def camera_record(camera: Camera) -> dict[str, Any]:
+    """A camera as plain values: ``world_from_camera`` (rows), ``yfov_deg``, ``aspect``, ``name``."""
+    return {
+        "world_from_camera": camera.world_from_camera.tolist(),
+        "yfov_deg": math.degrees(camera.yfov_rad),
+        "aspect": camera.aspect,
+        "name": camera.name,
+    }
+
+
+def camera_from_record(record: Any, where: str) -> Camera:
+    """The camera of a :func:`camera_record`.
+
+    Args:
+        record: Whatever was found in its place.
+        where: What an error names.
+
+    Raises:
+        InputError: It is no camera.
+    """
+    try:
+        pose = np.array(record["world_from_camera"], np.float64)
+        yfov_rad = math.radians(float(record["yfov_deg"]))
+        aspect = float(record.get("aspect", DEFAULT_ASPECT))
+        name = str(record.get("name", ""))
+    except (ValueError, KeyError, TypeError) as error:
+        raise _no_camera(where, f"{type(error).__name__}: {error}") from error
     if pose.shape != (4, 4) or not np.all(np.isfinite(pose)) or abs(np.linalg.det(pose)) < 1e-9:
-        raise _no_camera(path, "world_from_camera must be an invertible 4 × 4 matrix")
+        raise _no_camera(where, "world_from_camera must be an invertible 4 × 4 matrix")
     if not (0.0 < yfov_rad < math.pi and 0.0 < aspect < math.inf):
-        raise _no_camera(path, "yfov_deg must lie between 0 and 180, and aspect above 0")
+        raise _no_camera(where, "yfov_deg must lie between 0 and 180, and aspect above 0")
     return Camera(pose, yfov_rad, aspect, name)
 
 
