@@ -20,6 +20,7 @@ _RAW = ["--no-denoise", "--no-seams"]
 _GIVEN = {
     "--mode ao": ["--mode", "ao"],
     "--mode direct": ["--mode", "direct"],
+    "--mode indirect": ["--mode", "indirect"],
     "--integrator path": ["--integrator", "path"],
     "--time": ["--time", "1"],
     "--noise": ["--noise", "0.1"],

@@ -18,7 +18,7 @@ from irradia.scene.lightmap_uv.options import LayoutOptions
 
 from .workshop import bake, node, write_workshop
 
-_PARTS = ("", "_sh_l0", "_sh_x", "_sh_y", "_sh_z")
+_PARTS = ("", "_direct", "_sh_l0", "_sh_x", "_sh_y", "_sh_z")
 _PROBES = ("probes.npz", "probes.bin", "probes.three.json")
 
 
@@ -31,7 +31,7 @@ def everything(tmp_path_factory):
     """One bake with all maps: its folder and record."""
     folder = tmp_path_factory.mktemp("maps")
     scene = write_workshop(folder / "scene.gltf", _mix_left_lamp)
-    options = ["--samples", "8", "--directional", "sh", "--format", "all", "--no-denoise"]
+    options = ["--samples", "8", "--directional", "sh", "--direct-map", "--format", "all", "--no-denoise"]
     record = bake(scene, folder / "out", *options, "--probes", "grid:1.5", "--probe-samples", "32")
     return folder / "out", record
 
@@ -75,7 +75,17 @@ def test_a_mixed_light_has_its_shadow_in_the_mask_and_stays_on_its_node(everythi
 def test_the_baked_scene_holds_what_the_files_hold(everything):
     out, _ = everything
     lighting = read_document(out / "scene.baked.glb").json["extensions"]["IRRADIA_lighting"]
-    assert {"lightmap", "directional", "shadowMask", "probes"} <= set(lighting)
+    assert {"lightmap", "direct", "directional", "shadowMask", "probes"} <= set(lighting)
+
+
+def test_the_direct_map_is_a_part_of_the_light(everything):
+    out, record = everything
+    full, direct = (read_lightmap(out / f"lightmap{part}.exr") for part in ("", "_direct"))
+    np.testing.assert_array_equal(direct.coverage, full.coverage)
+    assert direct.quantity == full.quantity
+    share = direct.pages[full.covered].mean() / full.pages[full.covered].mean()
+    assert 0.3 < share < 1.0
+    assert record["direct_map"]["share"] == pytest.approx(share, rel=1e-4)
 
 
 def test_the_record_counts_probes(everything):
@@ -89,7 +99,7 @@ def test_the_report_shows_maps_that_go_with_the_plain_one(everything, tmp_path):
         scene=str(everything[0].parent / "scene.gltf"),
         out=tmp_path,
         layout=LayoutOptions(resolution=32),
-        bake=BakeOptions(samples=96, adaptive=True, directional="mono-sh", denoise=False),
+        bake=BakeOptions(samples=96, adaptive=True, directional="mono-sh", direct_map=True, denoise=False),
         views=ViewOptions(reference_spp=2, n_pixels=32 * 32, full_spp=2, baked_spp=2),
     )
     run_bake(job, silent_progress())
@@ -98,6 +108,7 @@ def test_the_report_shows_maps_that_go_with_the_plain_one(everything, tmp_path):
         "Shadow mask: left lamp in red",
         "Samples per texel, dark 64",
         "Directional map sh_direction",
+        "Direct map",
     ):
         assert f'alt="{name}' in html
     assert "Noise, 95th percentile" in html

@@ -10,7 +10,7 @@ import pytest
 from irradia.bake.directional import DirectionalMaps
 from irradia.bake.directional_modes import MODES
 from irradia.core.errors import InputError
-from irradia.export.glb import baked_glb
+from irradia.export.glb import Companions, baked_glb
 from irradia.export.read_baked import read_baked
 from irradia.scene.gltf import GltfDocument, document_to_scene, read_document
 
@@ -34,7 +34,7 @@ def export(gallery: GltfDocument, bake, tmp_path: Path, mode: str) -> tuple[Path
     plain = bake(gallery)
     maps = made_up(mode, plain.pages.shape)
     path = tmp_path / "directional.glb"
-    path.write_bytes(baked_glb(plain.scene, plain.layout, plain.pages, directional=maps))
+    path.write_bytes(baked_glb(plain.scene, plain.layout, plain.pages, Companions(directional=maps)))
     return path, maps
 
 

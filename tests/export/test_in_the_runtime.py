@@ -14,7 +14,7 @@ from irradia.bake.directional_modes import MODES
 from irradia.core.rng import Seed
 from irradia.core.sh import fibonacci_sphere
 from irradia.export.field_extension import put_field
-from irradia.export.glb import baked_glb
+from irradia.export.glb import Companions, baked_glb
 from irradia.export.probes_extension import read_baked_probes
 from irradia.export.read_baked import read_baked
 from irradia.field.encodings import (
@@ -59,7 +59,9 @@ def test_lightmap_and_directional_maps(read_in_node, gallery, bake, tmp_path, mo
     directional = DirectionalMaps(mode, maps)
     path = tmp_path / "scene.baked.glb"
     path.write_bytes(
-        baked_glb(plain.scene, plain.layout, plain.pages, encoding=encoding, directional=directional)
+        baked_glb(
+            plain.scene, plain.layout, plain.pages, Companions(directional=directional), encoding=encoding
+        )
     )
     found, expected = read_in_node(path), read_baked(str(path))
     assert expected.directional is not None
@@ -95,7 +97,7 @@ def test_probes(read_in_node, gallery, bake, tmp_path, structure):
         probes = made_probes(structure=OCTREE if structure else None)
     plain = bake(gallery)
     path = tmp_path / "probes.glb"
-    path.write_bytes(baked_glb(plain.scene, plain.layout, plain.pages, probes=probes))
+    path.write_bytes(baked_glb(plain.scene, plain.layout, plain.pages, Companions(probes=probes)))
     found, expected = read_in_node(path)["probes"], read_baked_probes(read_document(path))
     assert expected is not None
     assert found.get("structure") == structure

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from irradia.export.glb import baked_glb
+from irradia.export.glb import Companions, baked_glb
 from irradia.export.shadow_mask_extension import BakedShadows
 from irradia.formats.shadow_mask import quantise_shadow_mask
 from irradia.scene.gltf import GltfDocument, document_to_scene, read_document
@@ -32,7 +32,7 @@ def export(gallery: GltfDocument, bake, tmp_path: Path):
         pages = np.random.default_rng(1).random((*plain.pages.shape[:3], 4), np.float32)
         shadows = BakedShadows(pages, (2,)) if mode == "mixed" else None
         path = tmp_path / f"{mode}.glb"
-        path.write_bytes(baked_glb(scene, plain.layout, plain.pages, shadows=shadows))
+        path.write_bytes(baked_glb(scene, plain.layout, plain.pages, Companions(shadows=shadows)))
         return path, pages
 
     return run

@@ -66,6 +66,8 @@ class LightmapResult:
         shadows: (P, H, W, 4) what arrives of live lights, where any has a channel.
         lights: The scene's, with the part that each has had.
         shadow_channels: For each, its channel of ``shadows`` or None.
+        direct: (P, H, W, 3) the part of ``pages`` that baked punctual lights send straight, where it was
+            asked for and there are any.
     """
 
     texels: TexelSet
@@ -80,6 +82,7 @@ class LightmapResult:
     shadows: F32 | None = None
     lights: tuple[Light, ...] = ()
     shadow_channels: tuple[int | None, ...] = ()
+    direct: F32 | None = None
 
     @property
     def raw_pages(self) -> F32:
@@ -157,6 +160,7 @@ class LightmapBake:
             self._shadows(pages, finisher, progress),
             self.lights,
             self.masks.channels,
+            self._direct(pages, finisher, progress),
         )
 
     def _finisher(self, progress: Progress) -> Finisher:
@@ -205,6 +209,15 @@ class LightmapBake:
             progress,
         )
         return finish_shadow_mask(mask, self.texels, self.valid, pages, finisher, self.region)
+
+    def _direct(self, pages: F32, finisher: Finisher, progress: Progress) -> F32 | None:
+        if not self.options.direct_map:
+            return None
+        from irradia.bake.direct_map import trace_direct_map
+
+        samples, seed = self.options.planned_samples, self.options.seed
+        direct = trace_direct_map(self.light, self.mesh, self.lights, samples, seed, progress)
+        return None if direct is None else finisher.companion(direct, pages, lowest=0.0)
 
     def stats(self) -> dict[str, Any]:
         """What the bake did and how fast; plain values, fit for JSON."""

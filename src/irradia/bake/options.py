@@ -39,6 +39,7 @@ class BakeOptions:
         directional: Maps of the light's direction beside the plain map, or None.
         normal_maps: Whether texels receive light on the normals of their normal textures.
         seams: Whether edges that are one in space are made to agree across charts.
+        direct_map: Whether the part that punctual lights send straight is a map of its own as well.
     """
 
     samples: int | None = 64
@@ -54,6 +55,7 @@ class BakeOptions:
     directional: DirectionalName | None = None
     normal_maps: bool = False
     seams: bool = True
+    direct_map: bool = False
 
     def __post_init__(self) -> None:
         if self.samples is None and self.time_s is None and self.noise is None:

@@ -25,8 +25,8 @@ SECTIONS = {
     "When it is done": ("--samples", "--time", "--noise", "--adaptive", "--view-first"),
     "Texels": ("--resolution", "--texels-per-metre"),
     "What is baked": (
-        *("--mode", "--ao-distance", "--directional", "--normal-maps", "--probes", "--probe-samples"),
-        *("--only", "--update"),
+        *("--mode", "--ao-distance", "--directional", "--direct-map", "--normal-maps"),
+        *("--probes", "--probe-samples", "--only", "--update"),
     ),
     "The scene": (
         *("--env", "--env-rotation", "--env-strength", "--env-color", "--sky", "--no-default-light"),

@@ -32,7 +32,8 @@ CONFLICTS = (
         "--mode ao",
         (
             *("--time", "--noise", "--adaptive", "--indirect-clamp", "--integrator path", "--view-first"),
-            *("--directional", "--normal-maps", "--probes", "--only", "--update", "--shard", "--resume"),
+            *("--directional", "--direct-map", "--normal-maps", "--probes", "--only", "--update"),
+            *("--shard", "--resume"),
         ),
         "Ambient occlusion is no light: it has --samples, --ao-distance and --format.",
     ),
@@ -45,6 +46,11 @@ CONFLICTS = (
         "--update",
         ("--time", "--noise", "--adaptive", "--integrator path", "--mode direct"),
         "It compares the early passes of two bakes, which must be alike: give --samples alone.",
+    ),
+    Conflict(
+        "--direct-map",
+        ("--mode indirect", "--mode direct"),
+        "It is the part of a map of full light that punctual lights send straight.",
     ),
     Conflict(
         "--probes", ("--mode direct",), "Probes are lit by what the map holds; bake them with full light."
@@ -84,6 +90,7 @@ def _given(job: BakeJob) -> set[str]:
         "--integrator path": not bake.cached,
         "--view-first": job.view_first is not None,
         "--directional": bake.directional is not None,
+        "--direct-map": bake.direct_map,
         "--normal-maps": bake.normal_maps,
         "--probes": job.probes is not None,
         "--only": bool(job.only),

@@ -6,7 +6,7 @@ import json
 import shutil
 import time
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,9 @@ from irradia.core.progress import Progress
 from irradia.formats.lightmap import LightmapFile, make_lightmap, page_path
 from irradia.scene.layout import LightmapLayout
 from irradia.scene.types import Scene
+
+if TYPE_CHECKING:
+    from irradia.export.glb import Companions
 
 _BAND_ROWS = 64  # of a picture in the making, which takes a hundred bytes a pixel
 
@@ -39,7 +42,7 @@ def write_products(
     """
     from irradia.export import write_baked_glb
     from irradia.export.map_files import write_maps
-    from irradia.export.shadow_mask_extension import BakedShadows
+    from irradia.export.web_views import KEY, write_views
     from irradia.transport.backend import give_back
 
     give_back()  # files take as much again as the maps
@@ -55,13 +58,12 @@ def write_products(
             baked.scene,
             baked.layout,
             result.pages,
+            _companions(baked),
             compatible=job.compatible,
-            directional=result.directional,
-            shadows=None if result.shadows is None else BakedShadows(result.shadows, result.shadow_channels),
-            probes=baked.probes,
         )
     record = bake_record(baked, lightmap, progress, origin.to_dict())
-    if baked.view is not None:
+    if baked.view is not None and job.views is not None:
+        record[KEY] = write_views(folder, [baked.view.camera], [baked.view.reference], job.views.reference_spp)
         _write_picture(folder / "view.png", baked.view.baked)
         from irradia.cli.bake_report import report_data
         from irradia.report import write_report
@@ -69,6 +71,16 @@ def write_products(
         write_report(folder / "report.html", report_data(job, baked, record))
     write_text_atomic(folder / "bake.json", json.dumps(record, indent=2, allow_nan=False) + "\n")
     return record
+
+
+def _companions(baked: Baked) -> Companions:
+    """What goes into the .glb beside the lightmap; the field is put there once it is made."""
+    from irradia.export.glb import Companions
+    from irradia.export.shadow_mask_extension import BakedShadows
+
+    result = baked.result
+    shadows = None if result.shadows is None else BakedShadows(result.shadows, result.shadow_channels)
+    return Companions(result.directional, result.direct, shadows, baked.probes)
 
 
 def _texel_channels(baked: Baked) -> dict[str, NDArray]:
@@ -84,16 +96,20 @@ def _texel_channels(baked: Baked) -> dict[str, NDArray]:
 
 
 def _write_companions(folder: Path, job: BakeJob, baked: Baked, origin: dict[str, Any]) -> None:
-    """Directional maps, shadow mask, probes, field, and what the next update needs."""
+    """Directional and direct maps, shadow mask, probes, field, and what the next update needs."""
     from irradia.bake.rebake import write_memory
     from irradia.cli.bake_update import MEMORY
     from irradia.export.directional_files import write_directional_files
+    from irradia.export.map_files import write_maps
     from irradia.export.probe_files import write_probe_files
     from irradia.formats.shadow_mask import write_shadow_mask
 
     result = baked.result
     if result.directional is not None:
         write_directional_files(folder, result.directional, result.coverage, job.formats, origin)
+    if result.direct is not None:
+        direct = make_lightmap(result.direct, result.coverage, origin)
+        write_maps(folder, direct, job.formats, name="lightmap_direct")
     if result.shadows is not None:
         write_shadow_mask(folder / "shadow_mask.png", result.shadows)
     if baked.probes is not None:
@@ -120,6 +136,7 @@ def bake_record(
         "samples_per_second": stats["samples_per_second"],
         "launches_per_pass": stats["launches_per_pass"],
         "lightmap": map_record(lightmap, baked.layout, int(np.count_nonzero(~baked.result.valid))),
+        "direct_map": _direct_record(baked),
         "shadow_mask": _shadow_channels(baked),
         "probes": None
         if baked.probes is None
@@ -160,6 +177,18 @@ def map_record(lightmap: LightmapFile, layout: LightmapLayout, n_invalid_texels:
         "utilisation": float(covered.mean()),
         "texels_per_metre": layout.texels_per_metre,
     }
+
+
+def _direct_record(baked: Baked) -> dict[str, Any] | None:
+    """Which part of the map's light the direct map holds, or None without one."""
+    result = baked.result
+    if result.direct is None:
+        return None
+    there = result.coverage > 0.0
+    share = float(
+        result.direct[there].sum(dtype=np.float64) / max(result.pages[there].sum(dtype=np.float64), 1e-30)
+    )
+    return {"share": share}
 
 
 def _shadow_channels(baked: Baked) -> dict[str, int] | None:

@@ -43,6 +43,7 @@ PRODUCTS = (
     "field.*",
     "preview*.png",
     "view.png",
+    "view*.reference.hdr",
     "scene.baked.glb",
     "bake.json",
     "bake.memory",
@@ -52,7 +53,7 @@ EndedBy = Literal["samples", "noise", "time", "interrupt"]
 
 # Choices that change nothing of what is traced.
 _NOT_TRACED = ("views", "threads", "device", "shard", "compatible", "probes", "neural_field", "formats")
-_NOT_TRACED_OF_BAKE = ("time_s", "denoise", "seams")
+_NOT_TRACED_OF_BAKE = ("time_s", "denoise", "seams", "direct_map")
 
 
 @dataclass(frozen=True)

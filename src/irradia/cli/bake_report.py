@@ -41,13 +41,16 @@ def report_data(job: BakeJob, baked: Baked, record: dict[str, Any]) -> ReportDat
 
 
 def companion_pictures(result: LightmapResult) -> tuple[MapPicture, ...]:
-    """Samples per texel where they differ, shadow mask and directional maps, each as its first page."""
+    """Samples per texel where they differ, and the maps beside the lightmap, each as its first page."""
     pictures = []
     counts = result.sample_count[result.valid]
     if len(counts) and counts.min() != counts.max():
         share = result.texels.to_pages(result.sample_count / np.float32(counts.max()))[0]
         name = f"Samples per texel, dark {counts.min()} to bright {counts.max()}"
         pictures.append(MapPicture(name, error_colours(share)))
+    if result.direct is not None:
+        exposure_ev = automatic_exposure_ev(result.pages[result.coverage > 0.0])
+        pictures.append(MapPicture("Direct map", display(result.direct[0], exposure_ev)))
     if result.shadows is not None:
         names = _shadow_names(result)
         pictures.append(MapPicture(f"Shadow mask: {names}", _codes(result.shadows[0, ..., :3])))

@@ -40,7 +40,7 @@ def command(
     job = BakeJob(
         scene=SCENE,
         out=out,
-        bake=BakeOptions(seed=seed),
+        bake=BakeOptions(seed=seed, direct_map=True),
         views=ViewOptions(reference_spp, n_pixels=N_PIXELS, seed=seed),
         neural_field=FieldOptions(seed=seed),
         device=device,  # type: ignore[arg-type]

@@ -166,6 +166,11 @@ def map_options(function: F) -> F:
             metavar="MODE",
             help="Maps of the light's direction as well, for normal maps: dominant, rnm, sh or mono-sh.",
         ),
+        click.option(
+            "--direct-map",
+            is_flag=True,
+            help="A map of the first bounce of punctual lights as well, for fields of indirect light.",
+        ),
         click.option("--normal-maps", is_flag=True, help="Receive light on normal-mapped normals."),
         click.option("--no-seams", is_flag=True, help="Leave seams between charts as they are."),
         click.option(

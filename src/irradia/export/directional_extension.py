@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import cast
 
-import numpy as np
-
 from irradia.bake.directional import DirectionalMaps
 from irradia.bake.directional_modes import MODES, DirectionalName
 from irradia.core.errors import InputError
 from irradia.export.lighting_extension import NAME
+from irradia.export.map_entry import add_map_entry, read_map_entry
 from irradia.export.slots import Slots
-from irradia.formats.ktx2 import Encoding, decode_ktx2, encode_ktx2
+from irradia.formats.ktx2 import Encoding
 from irradia.formats.lightmap import power_of_two_scale
 from irradia.scene.gltf.accessors import Accessors
 from irradia.scene.gltf.document import GltfDocument, Json
@@ -32,10 +31,7 @@ def add_directional(json: Json, slots: Slots, maps: DirectionalMaps, encoding: E
         is_light = name in MODES[maps.mode].light_maps
         scale = power_of_two_scale(pages) if is_light else 1.0
         stored: Encoding = encoding if is_light else "half"
-        entry: Json = {"bufferView": -1, "encoding": stored, "scale": scale}
-        texture = encode_ktx2(pages / np.float32(scale), stored, {"irradia:scale": repr(scale)})
-        slots.add_blob(texture, lambda view, entry=entry: entry.update(bufferView=view))
-        entries[name] = entry
+        entries[name] = add_map_entry(slots, pages, stored, scale)
     json["extensions"][NAME]["directional"] = {"mode": maps.mode, "maps": entries}
 
 
@@ -51,11 +47,7 @@ def read_directional(document: GltfDocument, accessors: Accessors) -> Directiona
     directional = extension.object("directional")
     mode = cast(DirectionalName, directional.choice("mode", tuple(MODES)))
     maps = directional.object("maps")
-    pages = {}
-    for name in MODES[mode].maps:
-        entry = maps.object(name)
-        data = bytes(accessors.read_view(entry.integer("bufferView")))
-        pages[name] = decode_ktx2(data, entry.pointer).pages * np.float32(entry.number("scale", 1.0))
+    pages = {name: read_map_entry(maps.object(name), accessors) for name in MODES[mode].maps}
     shapes = {array.shape for array in pages.values()}
     if len(shapes) > 1:
         raise InputError("expected maps of one size", where=maps.pointer)

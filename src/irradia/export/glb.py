@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from irradia.core.files import write_atomic
 from irradia.export import lighting_extension
 from irradia.export.bindings import bind_nodes
 from irradia.export.container import glb_container
+from irradia.export.direct_extension import add_direct
 from irradia.export.directional_extension import add_directional
 from irradia.export.earlier_bake import remove_earlier_bake
 from irradia.export.instances import GPU_INSTANCING, write_out_gpu_instances
@@ -37,17 +39,32 @@ _COMPRESSION = (DRACO, "EXT_meshopt_compression", "KHR_meshopt_compression")
 _SIGNATURES = ((b"\x89PNG", "image/png"), (b"\xff\xd8", "image/jpeg"), (b"RIFF", "image/webp"))
 
 
+@dataclass(frozen=True)
+class Companions:
+    """What goes into the document beside the lightmap.
+
+    Attributes:
+        directional: Maps that say where the light comes from.
+        direct: (P, H, W, 3) E/π: the part of the lightmap that fields of indirect light lack.
+        shadows: What arrives of the lights that shine live.
+        probes: Light where nothing is baked.
+    """
+
+    directional: DirectionalMaps | None = None
+    direct: NDArray[np.float32] | None = None
+    shadows: BakedShadows | None = None
+    probes: ProbeSet | None = None
+
+
 def write_baked_glb(
     path: Path | str,
     scene: Scene,
     layout: LightmapLayout,
     pages_irradiance_over_pi: NDArray[np.float32],
+    companions: Companions | None = None,
     *,
     compatible: bool = False,
     encoding: Encoding = "rgb9e5",
-    directional: DirectionalMaps | None = None,
-    shadows: BakedShadows | None = None,
-    probes: ProbeSet | None = None,
 ) -> None:
     """Writes the scene's document with its lightmap, whole or not at all.
 
@@ -60,24 +77,14 @@ def write_baked_glb(
         scene: As imported; its ``document`` is what is written.
         layout: Where charts lie.
         pages_irradiance_over_pi: (P, H, W, 3) linear E/π, dilated.
+        companions: What goes with the map.
         compatible: Writes meshes with several instances out, one mesh and node each, so that loaders
             of MOZ_lightmap light them too. Otherwise such meshes stay shared, and only readers of
             IRRADIA_lighting light them.
         encoding: Of the HDR map.
-        directional: Maps that say where the light comes from.
-        shadows: What arrives of the lights that shine live.
-        probes: Light where nothing is baked.
     """
-    data = baked_glb(
-        scene,
-        layout,
-        pages_irradiance_over_pi,
-        compatible=compatible,
-        encoding=encoding,
-        directional=directional,
-        shadows=shadows,
-        probes=probes,
-    )
+    pages = pages_irradiance_over_pi
+    data = baked_glb(scene, layout, pages, companions, compatible=compatible, encoding=encoding)
     with write_atomic(path) as stream:
         stream.write(data)
 
@@ -86,18 +93,16 @@ def baked_glb(
     scene: Scene,
     layout: LightmapLayout,
     pages: NDArray[np.float32],
+    companions: Companions | None = None,
     *,
     compatible: bool = False,
     encoding: Encoding = "rgb9e5",
-    directional: DirectionalMaps | None = None,
-    shadows: BakedShadows | None = None,
-    probes: ProbeSet | None = None,
 ) -> bytes:
     """The bytes of :func:`write_baked_glb`."""
     if scene.document is None:
         raise InternalError("the scene to export has no document")
     export = _Export(scene, scene.document, layout, pages, compatible)
-    binary = export.run(encoding, directional, shadows, probes)
+    binary = export.run(encoding, companions or Companions())
     return glb_container(export.json, binary)
 
 
@@ -157,13 +162,7 @@ class _Export:
             free_textures=remove_earlier_bake(self.json),
         )
 
-    def run(
-        self,
-        encoding: Encoding,
-        directional: DirectionalMaps | None,
-        shadows: BakedShadows | None,
-        probes: ProbeSet | None,
-    ) -> bytes:
+    def run(self, encoding: Encoding, companions: Companions) -> bytes:
         """Changes the JSON and returns the binary chunk."""
         self._bind_nodes()
         writer = PrimitiveWriter(self._document, self._accessors, self._slots)
@@ -172,13 +171,19 @@ class _Export:
         if self._bound:
             lighting_extension.move_baked_lights(self.json, live_nodes(self._scene.lights))
             lighting_extension.add_lightmap(self.json, self._slots, self._pages, encoding)
-            if directional is not None:
-                add_directional(self.json, self._slots, directional, encoding)
-            add_shadow_mask(self.json, self._slots, self._scene.lights, shadows)
-            if probes is not None:
-                add_probes(self.json, self._slots, probes)
+            self._add(companions, encoding)
             used.add(lighting_extension.NAME)
         return self._finish(used)
+
+    def _add(self, companions: Companions, encoding: Encoding) -> None:
+        """Adds what goes with the lightmap."""
+        if companions.directional is not None:
+            add_directional(self.json, self._slots, companions.directional, encoding)
+        if companions.direct is not None:
+            add_direct(self.json, self._slots, companions.direct, encoding)
+        add_shadow_mask(self.json, self._slots, self._scene.lights, companions.shadows)
+        if companions.probes is not None:
+            add_probes(self.json, self._slots, companions.probes)
 
     def run_without_light(self) -> bytes:
         """Like :meth:`run`, with the pages in materials alone and all lights on their nodes."""

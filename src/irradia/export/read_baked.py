@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from irradia.bake.directional import DirectionalMaps
 from irradia.core.errors import InputError
+from irradia.export.direct_extension import read_direct
 from irradia.export.directional_extension import read_directional
 from irradia.export.lighting_extension import NAME, NO_PAGE, VERSION
 from irradia.formats.ktx2 import decode_ktx2
@@ -27,12 +28,14 @@ class BakedScene:
     Attributes:
         pages: (P, H, W, 3) linear E/π.
         directional: Maps that say where the light comes from, or None.
+        direct: (P, H, W, 3) the part of ``pages`` that baked punctual lights send straight, or None.
     """
 
     scene: Scene
     layout: LightmapLayout
     pages: NDArray[np.float32]
     directional: DirectionalMaps | None = None
+    direct: NDArray[np.float32] | None = None
 
 
 def read_baked(spec: str, options: LoadOptions | None = None) -> BakedScene:
@@ -60,7 +63,7 @@ def read_baked(spec: str, options: LoadOptions | None = None) -> BakedScene:
         offset=np.array([r.offset for r in rectangles], np.float32).reshape(-1, 2),
         texels_per_metre=0.0,
     )
-    return BakedScene(scene, layout, pages, read_directional(document, accessors))
+    return BakedScene(scene, layout, pages, read_directional(document, accessors), read_direct(document))
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ for any number of threads, and no value returns to the host.
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeVar
@@ -21,6 +22,7 @@ from irradia.transport.channels import MAP, Channels
 from irradia.transport.footprints import Footprints, clear_footprints, light_of_darker_side
 from irradia.transport.frames import Frame, TangentFrames
 from irradia.transport.geometry import Hit, SurfacePoint
+from irradia.transport.lights import Lights
 from irradia.transport.normal_maps import NormalMaps
 from irradia.transport.path import LightCache, direct, draw_ray, start, trace
 from irradia.transport.sampling import Sampler, hash_u32
@@ -269,6 +271,32 @@ class TexelLight:
             sums = _plus(sums, self.channels.of_arrival(arrival, frame))
             k += 1
         return sums
+
+    def nothing(self) -> mi.Color3f:
+        """No light at any texel."""
+        return dr.zeros(mi.Color3f, self.n_texels)
+
+    def add_next_event(
+        self, total: mi.Color3f, lights: Lights, seed: int, first: int, end: int
+    ) -> mi.Color3f:
+        """Adds next-event samples of other lights than the world's to sums of E/π at all texels.
+
+        Args:
+            total: What was summed before.
+            lights: Those that rays can't meet: what gather rays bring is not asked for.
+            seed: Stream of random numbers.
+            first: The first sample; sub-samples are taken in turn.
+            end: One past the last.
+        """
+        alone, world = copy.copy(self), copy.copy(self.world)
+        world.lights, alone.world, alone.channels = lights, world, Channels()
+        stream = _stream(self._pixel, seed)
+        (arrived,) = alone._direct(
+            self._every, stream, dr.opaque(mi.UInt32, first), dr.opaque(mi.UInt32, end)
+        )
+        result = total + arrived
+        dr.eval(result)
+        return result
 
     def _receiver(self, texel: mi.UInt32, subsample: mi.UInt32) -> tuple[SurfacePoint, Frame]:
         """The place that light is gathered at, bent by its normal map where those count."""
