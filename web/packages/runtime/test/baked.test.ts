@@ -36,9 +36,9 @@ function lightingOf({ json }: Glb): Glb["json"] {
 }
 
 test("maps come back texel by texel, in both encodings", () => {
-  const { lightmap, directional, lighting } = baked();
-  assert.deepEqual(lighting.lightmap?.scale, 2);
-  const maps = [lightmap, directional?.get("sh_l0"), directional?.get("sh_direction")];
+  const { lightmap, direct, directional, lighting } = baked();
+  assert.deepEqual([lighting.lightmap?.scale, lighting.direct?.scale], [2, 2]);
+  const maps = [lightmap, direct, directional?.get("sh_l0"), directional?.get("sh_direction")];
   for (const map of maps) {
     assert.ok(map);
     assert.deepEqual([map.width, map.height, map.layers], [PAGES.width, PAGES.height, PAGES.pages]);
@@ -97,9 +97,10 @@ test("behind another loader, fetching the views that it is told to, reads the sa
   const fetched = new Map(wanted.map((view) => [view, views(view, "test")]));
   const file = gltfFile(glb.json, (index) => fetched.get(index) ?? assert.fail(`${index} wasn't fetched`));
 
-  const { lightmap, directional, probes, field } = readLighting(file.json) ?? assert.fail();
-  assert.ok(lightmap && directional && probes && field);
+  const { lightmap, direct, directional, probes, field } = readLighting(file.json) ?? assert.fail();
+  assert.ok(lightmap && direct && directional && probes && field);
   assert.deepEqual(readMap(lightmap, lightmap, file.views, {}), whole.lightmap);
+  assert.deepEqual(readMap(direct, lightmap, file.views, {}), whole.direct);
   for (const [name, entry] of directional.maps) {
     assert.deepEqual(readMap(entry, lightmap, file.views, {}), whole.directional?.get(name));
   }
@@ -158,6 +159,12 @@ test("what is wrong is named with its place", () => {
         lightingOf(g).lightmap.encoding = "half";
       },
       /expected texels as half, found rgb9e5/,
+    ],
+    [
+      (g) => {
+        lightingOf(g).direct.encoding = "rgb9e5";
+      },
+      /direct: expected texels as rgb9e5, found half/,
     ],
     [
       (g) => {
@@ -251,8 +258,8 @@ test("what is wrong is named with its place", () => {
 function summary(bytes: Uint8Array): unknown {
   const light = readBakedGlb(bytes);
   if (!light) return null;
-  const { lightmap, directional, probes, field, nodes, shadowMask } = light;
-  const texels = [lightmap, ...(directional?.values() ?? [])].map((map) => map && [...map.texels]);
+  const { lightmap, direct, directional, probes, field, nodes, shadowMask } = light;
+  const texels = [lightmap, direct, ...(directional?.values() ?? [])].map((map) => map && [...map.texels]);
   const arrays = Object.values(probes ?? {}).map((value) =>
     ArrayBuffer.isView(value) ? [...(value as Uint8Array)] : value,
   );

@@ -62,6 +62,7 @@ function lighting(binary: Binary): object {
       exposure: -1.5,
       ...PAGES,
     },
+    direct: map("half"),
     directional: { mode: "mono-sh", maps: { sh_l0: map("rgb9e5"), sh_direction: map("half") } },
     shadowMask: { pages: [0, 1].map(() => ({ mimeType: "image/png", ...binary.add(png) })) },
     probes: probes(binary),

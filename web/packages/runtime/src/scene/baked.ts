@@ -26,6 +26,8 @@ export interface BakedLight {
   readonly lighting: Lighting;
   /** Texels times `lighting.lightmap.scale` are E/π. */
   readonly lightmap?: LightTexture;
+  /** First bounces alone; texels times `lighting.direct.scale` are E/π. */
+  readonly direct?: LightTexture;
   /** By name; texels times the scale in `lighting.directional.maps`. */
   readonly directional?: ReadonlyMap<string, LightTexture>;
   /** PNG files, one a page. */
@@ -43,14 +45,19 @@ export interface BakedLight {
  * @throws InputError where anything of it is damaged
  */
 export function readBakedGlb(bytes: Uint8Array, options: ReadBakedOptions = {}): BakedLight | undefined {
-  const file = readGlb(bytes, options.where);
+  return readBaked(readGlb(bytes, options.where), options);
+}
+
+/** The same behind a loader of one's own, such as GLTFLoader. */
+export function readBaked(file: GltfFile, options: UnpackOptions = {}): BakedLight | undefined {
   const lighting = readLighting(file.json);
   if (!lighting) return undefined;
-  const { lightmap, directional, shadowMask, probes, field } = lighting;
+  const { lightmap, direct, directional, shadowMask, probes, field } = lighting;
   const views = file.views;
   return {
     lighting,
     ...(lightmap && { lightmap: readMap(lightmap, lightmap, views, options) }),
+    ...(lightmap && direct && { direct: readMap(direct, lightmap, views, options) }),
     ...(lightmap && directional && { directional: readMaps(directional.maps, lightmap, views, options) }),
     ...(shadowMask && { shadowMask: shadowMask.map((view) => views(view, "shadow mask")) }),
     ...(probes && { probes: readProbes(probes, views) }),

@@ -64,6 +64,8 @@ export interface FieldEntry {
 /** All light of a document. */
 export interface Lighting {
   readonly lightmap?: LightmapEntry;
+  /** First bounces alone of the lights in the lightmap, to be added to a field of indirect light; laid out like it. */
+  readonly direct?: MapEntry;
   readonly directional?: DirectionalEntry;
   /** Buffer views of PNG images, one a page; docs/shadow_mask.md. */
   readonly shadowMask?: readonly number[];
@@ -84,10 +86,12 @@ export function readLighting(document: JsonView): Lighting | undefined {
   if (!extension) return undefined;
   extension.integer("version", VERSION, VERSION);
   const [lightmap, directional] = [extension.optional("lightmap"), extension.optional("directional")];
+  const direct = extension.optional("direct");
   const [mask, probes] = [extension.optional("shadowMask"), extension.optional("probes")];
   const field = extension.optional("field");
   return {
     ...(lightmap && { lightmap: readLightmapEntry(lightmap) }),
+    ...(direct && lightmap && { direct: readMapEntry(direct) }),
     ...(directional && lightmap && { directional: readDirectionalEntry(directional) }),
     ...(mask && lightmap && { shadowMask: readShadowMask(mask, lightmap) }),
     ...(probes && { probes }),
@@ -97,8 +101,8 @@ export function readLighting(document: JsonView): Lighting | undefined {
 
 /** All buffer views of a document's light, for loaders that fetch them one by one; those of nodes aside. */
 export function viewsOfLighting(lighting: Lighting): number[] {
-  const { lightmap, directional, shadowMask = [], probes, field } = lighting;
-  const maps = [lightmap, field, ...(directional?.maps.values() ?? [])];
+  const { lightmap, direct, directional, shadowMask = [], probes, field } = lighting;
+  const maps = [lightmap, direct, field, ...(directional?.maps.values() ?? [])];
   const views = [...maps.flatMap((entry) => entry?.bufferView ?? []), ...shadowMask];
   for (const entry of [probes, probes?.optional("octree")]) {
     for (const key of entry?.keys ?? []) {
