@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 import signal
@@ -19,6 +20,8 @@ from irradia.cli.bake_job import PRODUCTS, BakeJob, run_bake
 from irradia.cli.bake_report import convergence
 from irradia.cli.bake_views import ViewOptions, picture_size
 from irradia.core.progress import silent_progress
+from irradia.export.web_folder import collect
+from irradia.formats.hdr import read_hdr
 from irradia.formats.lightmap import read_lightmap
 from irradia.scene.lightmap_uv.options import LayoutOptions
 
@@ -48,9 +51,21 @@ def test_everything_is_in_one_folder(job, summary):
         "report.html",
         "scene.baked.glb",
         "view.png",
+        "view0.reference.hdr",
     }
     assert sorted(summary.files) == sorted(path.name for path in job.out.iterdir())
     assert [path.name for path in job.out.parent.iterdir()] == [job.out.name]
+
+
+def test_the_reference_is_kept_with_its_camera(job, summary):
+    (view,) = summary.record["views"]
+    assert (view["width"], view["height"], view["spp"]) == (64, 64, 256)
+    picture = read_hdr(job.out / view["file"])
+    assert picture.shape == (64, 64, 3)
+    assert picture.mean() > 0.01
+    assert collect([job.out]).scenes[0].references[0].camera.yfov_rad == pytest.approx(
+        math.radians(view["camera"]["yfov_deg"])
+    )
 
 
 def test_every_product_is_one_that_a_later_bake_replaces(summary):

@@ -16,6 +16,7 @@ from irradia.core import provenance
 from irradia.core.colour import automatic_exposure_ev, picture_srgb8
 from irradia.core.files import write_text_atomic
 from irradia.core.progress import Progress
+from irradia.export.web_views import KEY, write_views
 from irradia.field.cost import counted_cost
 from irradia.field.native_fields import StoredField
 from irradia.field.registry import spec_to_dict
@@ -42,7 +43,9 @@ def write_evaluation_files(
     with progress.stage("files"):
         for number in range(len(found.cameras)):
             _write_pictures(folder, job, found, number)
-    record = evaluation_record(job, found, progress, time.perf_counter() - start)
+        pictures = [reference.mean for reference in found.references]
+        views = write_views(folder, found.cameras, pictures, job.pictures.reference_spp)
+    record = evaluation_record(job, found, progress, time.perf_counter() - start) | {KEY: views}
     notes = tuple(_notes(found))
     data = EvaluationData(
         found.scene.name, summary(job, found), record["stage_s"], record["provenance"], notes

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from irradia.transport.render import RenderOptions
 
 F32 = NDArray[np.float32]
-STALE = ("eval.json", "eval.html", "view*.png", "error*.png")
+STALE = ("eval.json", "eval.html", "view*.png", "view*.reference.hdr", "error*.png")
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,7 @@ class Viewer:
         try:
             return self.files[name].read_text(encoding="utf-8")
         except (KeyError, OSError) as error:
-            raise _not_built() from error
+            raise not_built() from error
 
 
 def find_viewer() -> Viewer:
@@ -53,9 +53,9 @@ def find_viewer() -> Viewer:
     """
     for folder in PLACES:
         if (folder / PAGE).is_file():
-            found = (path for path in sorted(folder.rglob("*")) if path.is_file())
+            found = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.suffix != ".map")
             return Viewer({path.relative_to(folder).as_posix(): path for path in found})
-    raise _not_built()
+    raise not_built()
 
 
 def put_after(text: str, mark: str, inserted: str) -> str:
@@ -65,11 +65,12 @@ def put_after(text: str, mark: str, inserted: str) -> str:
         MissingDependencyError: It doesn't: this is another viewer's page.
     """
     if text.count(mark) != 1:
-        raise _not_built(f"its page doesn't hold {mark} once")
+        raise not_built(f"its page doesn't hold {mark} once")
     return text.replace(mark, mark + inserted)
 
 
-def _not_built(reason: str = "it isn't built") -> MissingDependencyError:
+def not_built(reason: str = "it isn't built") -> MissingDependencyError:
+    """What to tell the user of a viewer that is absent or of another make."""
     return MissingDependencyError(
         f"the viewer can't be shown: {reason}",
         fix="In a checkout, `make viewer` builds it (it needs Node.js and npm); packages come with it.",
