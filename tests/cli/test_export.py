@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from irradia.cli import app
+from irradia.export.container import glb_container
 from irradia.export.field_extension import read_baked_field
 from irradia.field.bin_conventions import BinConventions
 from irradia.field.bin_reader import decode_bin
@@ -154,13 +155,39 @@ def test_samples_of_other_light_are_not_believed(capfd, tmp_path: Path) -> None:
     assert not out.exists()
 
 
-def test_field_goes_into_a_baked_scene(export, tmp_path: Path) -> None:
-    scene = tmp_path / "scene.gltf"
+def bare_scene(path: Path) -> Path:
+    """A baked scene with nothing inside."""
     root = {"asset": {"version": "2.0"}, "extensions": {"IRRADIA_lighting": {"version": 1}}}
-    scene.write_text(json.dumps(root), encoding="utf-8")
+    path.write_bytes(glb_container(root, b""))
+    return path
+
+
+def test_field_goes_into_a_baked_scene(export, tmp_path: Path) -> None:
+    scene = bare_scene(tmp_path / "scene.baked.glb")
     code, said = export(GRID, "-o", tmp_path / "out.glb", "--scene", scene, "--precision", "fp32")
     assert (code, said["bytes"]) == (0, (tmp_path / "out.glb").stat().st_size)
     stored = read_baked_field(read_document(tmp_path / "out.glb"))
     assert stored is not None
     same = stored.field.irradiance(*places())
     np.testing.assert_array_equal(same, load_field(GRID).irradiance(*places()))
+
+
+def test_a_field_comes_out_of_a_baked_scene_as_it_went_in(export, tmp_path: Path) -> None:
+    glb, small = bare_scene(tmp_path / "scene.baked.glb"), tmp_path / "small.safetensors"
+    assert export(GRID, "-o", small, "--finish", "int8")[0] == 0
+    assert export(small, "-o", tmp_path / "with.glb", "--scene", glb)[0] == 0
+    code, said = export(tmp_path / "with.glb", "-o", tmp_path / "out.safetensors")
+    assert code == 0
+    assert said["bytes"] == (tmp_path / "out.safetensors").stat().st_size
+    before, after = read_field(small), read_field(tmp_path / "out.safetensors")
+    np.testing.assert_array_equal(before.field.irradiance(*places()), after.field.irradiance(*places()))
+    assert after.tensors.keys() == before.tensors.keys()
+    assert {tensor.bits for tensor in after.tensors.values()} == {8}
+    assert after.provenance["export"]["inputs"].keys() == {"with.glb"}
+
+
+def test_a_scene_without_a_field_has_none_to_read_out(tmp_path: Path, capfd) -> None:
+    glb = bare_scene(tmp_path / "scene.baked.glb")
+    assert app.run(["export", str(glb), "-o", str(tmp_path / "out.safetensors")]) == 2
+    assert "no field inside" in capfd.readouterr().err
+    assert not (tmp_path / "out.safetensors").exists()

@@ -12,7 +12,9 @@ from irradia.cli.bake_job import BakeJob, run_bake
 from irradia.cli.bake_views import ViewOptions
 from irradia.cli.field_job import FILE, FieldOptions
 from irradia.core.progress import silent_progress
+from irradia.export.field_extension import baked_field_bytes
 from irradia.field.files import read_field
+from irradia.scene.gltf import read_document
 from irradia.scene.lightmap_uv.options import LayoutOptions
 
 pytestmark = pytest.mark.usefixtures("cpu_device")
@@ -38,6 +40,10 @@ def test_the_field_stands_beside_the_lightmap_with_its_tables_in_codes(baked):
     stored = read_field(baked / FILE)
     assert {tensor.bits for tensor in stored.tensors.values()} == {8}
     assert stored.n_bytes < 60_000
+
+
+def test_the_baked_scene_holds_the_same_file(baked):
+    assert baked_field_bytes(read_document(baked / "scene.baked.glb")) == (baked / FILE).read_bytes()
 
 
 def test_it_holds_the_light_of_the_room(baked):

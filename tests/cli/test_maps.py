@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from PIL import Image
 
 from irradia.bake.options import BakeOptions
+from irradia.cli import app
 from irradia.cli.bake_job import PRODUCTS, BakeJob, run_bake
 from irradia.cli.bake_views import ViewOptions
 from irradia.core.progress import silent_progress
@@ -76,6 +79,28 @@ def test_the_baked_scene_holds_what_the_files_hold(everything):
     out, _ = everything
     lighting = read_document(out / "scene.baked.glb").json["extensions"]["IRRADIA_lighting"]
     assert {"lightmap", "direct", "directional", "shadowMask", "probes"} <= set(lighting)
+
+
+def test_info_lists_the_light_inside(everything, capfd):
+    out, record = everything
+    assert app.run(["info", str(out / "scene.baked.glb"), "--json"]) == 0
+    parts = {part["name"]: part for part in json.loads(capfd.readouterr().out)["baked"]}
+    assert list(parts) == ["lightmap", "direct", "directional", "shadowMask", "probes"]
+    assert "1 page of 32 × 32, rgb9e5" in parts["lightmap"]["text"]
+    assert "sh, 4 maps" in parts["directional"]["text"]
+    assert f"{record['probes']['count']}, grid" in parts["probes"]["text"]
+    inside = sum(part["n_bytes"] for part in parts.values())
+    assert 1000 < inside < (out / "scene.baked.glb").stat().st_size
+    assert app.run(["info", str(out / "scene.baked.glb")]) == 0
+    said = capfd.readouterr().out
+    assert "baked light inside:" in said
+    assert f"{parts['probes']['n_bytes']:,} bytes" in said
+
+
+def test_info_says_nothing_of_light_where_none_is_inside(everything, capfd):
+    scene = everything[0].parent / "scene.gltf"
+    assert app.run(["info", str(scene), "--json"]) == 0
+    assert json.loads(capfd.readouterr().out)["baked"] == []
 
 
 def test_the_direct_map_is_a_part_of_the_light(everything):

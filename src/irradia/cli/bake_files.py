@@ -63,7 +63,9 @@ def write_products(
         )
     record = bake_record(baked, lightmap, progress, origin.to_dict())
     if baked.view is not None and job.views is not None:
-        record[KEY] = write_views(folder, [baked.view.camera], [baked.view.reference], job.views.reference_spp)
+        record[KEY] = write_views(
+            folder, [baked.view.camera], [baked.view.reference], job.views.reference_spp
+        )
         _write_picture(folder / "view.png", baked.view.baked)
         from irradia.cli.bake_report import report_data
         from irradia.report import write_report
@@ -74,13 +76,14 @@ def write_products(
 
 
 def _companions(baked: Baked) -> Companions:
-    """What goes into the .glb beside the lightmap; the field is put there once it is made."""
+    """What goes into the .glb beside the lightmap."""
     from irradia.export.glb import Companions
     from irradia.export.shadow_mask_extension import BakedShadows
 
     result = baked.result
     shadows = None if result.shadows is None else BakedShadows(result.shadows, result.shadow_channels)
-    return Companions(result.directional, result.direct, shadows, baked.probes)
+    field = None if baked.neural_field is None else baked.neural_field.data
+    return Companions(result.directional, result.direct, shadows, baked.probes, field)
 
 
 def _texel_channels(baked: Baked) -> dict[str, NDArray]:
@@ -185,10 +188,8 @@ def _direct_record(baked: Baked) -> dict[str, Any] | None:
     if result.direct is None:
         return None
     there = result.coverage > 0.0
-    share = float(
-        result.direct[there].sum(dtype=np.float64) / max(result.pages[there].sum(dtype=np.float64), 1e-30)
-    )
-    return {"share": share}
+    direct, full = (pages[there].sum(dtype=np.float64) for pages in (result.direct, result.pages))
+    return {"share": float(direct / max(full, 1e-30))}
 
 
 def _shadow_channels(baked: Baked) -> dict[str, int] | None:

@@ -30,7 +30,7 @@ class ExportJob:
     """Everything that decides the file.
 
     Attributes:
-        weights: The field that is read.
+        weights: The field that is read; of a ``.glb`` the one inside.
         out: Its end chooses the format; a ``.glb`` is ``scene`` with the field inside.
         scene: A baked scene.
         precision: Of everything that isn't quantised.
@@ -123,6 +123,8 @@ def _read(job: ExportJob, progress: Progress) -> tuple[StoredField, Calibration 
 
     changes = _changes(job.changes)
     conventions: BinConventions = conventions_from_options(job.preset or "irradia", changes)
+    if job.weights.suffix.lower() == ".glb":
+        return _read_out(job.weights), None
     if job.known is None:
         return read_field(job.weights, conventions), None
     known, data = open_samples(job.known, job.bin_samples), job.weights.read_bytes()
@@ -136,6 +138,18 @@ def _read(job: ExportJob, progress: Progress) -> tuple[StoredField, Calibration 
             fix="Give samples of the scene and the light that the field was trained from.",
         )
     return StoredField(found.field, n_bytes=len(data)), found
+
+
+def _read_out(path: Path) -> StoredField:
+    """The field inside a baked scene."""
+    from irradia.export.field_extension import read_baked_document, read_baked_field
+
+    stored = read_baked_field(read_baked_document(path))
+    if stored is None:
+        raise InputError(
+            "there is no field inside", where=str(path), fix="`irradia export FIELD --scene` puts one there."
+        )
+    return stored
 
 
 def _changes(texts: tuple[str, ...]) -> dict[str, Any]:

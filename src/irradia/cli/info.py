@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ from irradia.cli import options
 from irradia.cli.output import finish
 
 if TYPE_CHECKING:
+    from irradia.export.contents import BakedPart
     from irradia.scene.info import SceneFacts
 
 
@@ -27,15 +29,18 @@ def command(as_json: bool, scene: str, variant: str | None, pose_time: float | N
     """
     from irradia.cli.bake_job import open_scene
     from irradia.core.progress import silent_progress
+    from irradia.export.contents import baked_parts
     from irradia.scene.info import scene_facts
     from irradia.scene.load import LoadOptions
 
     load = LoadOptions(pose_time=pose_time, variant=variant)
-    facts = scene_facts(open_scene(scene, load, options.light_options(**light), silent_progress()))
-    finish(as_json, _plain(facts), describe(facts))
+    opened = open_scene(scene, load, options.light_options(**light), silent_progress())
+    facts = scene_facts(opened)
+    baked = baked_parts(opened.document) if opened.document is not None else ()
+    finish(as_json, _plain(facts) | {"baked": [asdict(part) for part in baked]}, describe(facts, baked))
 
 
-def describe(facts: SceneFacts) -> str:
+def describe(facts: SceneFacts, baked: Sequence[BakedPart] = ()) -> str:
     """The inventory as text."""
     size = [high - low for low, high in zip(facts.bounds_min_m, facts.bounds_max_m, strict=True)]
     lines = [
@@ -48,12 +53,21 @@ def describe(facts: SceneFacts) -> str:
         *_materials(facts),
         "  light, mean irradiance before shadows:",
         *[f"    {s.mean_irradiance:>10.4g}  {s.kind:<12} {s.name}" for s in facts.sources],
+        *_baked(baked),
         *[f"  note: {note}" for note in facts.notes],
         *[f"  warning: {warning}" for warning in facts.warnings],
     ]
     if not facts.sources:
         lines.insert(lines.index("  light, mean irradiance before shadows:") + 1, "    none")
     return "\n".join(lines)
+
+
+def _baked(parts: Sequence[BakedPart]) -> list[str]:
+    """The light that an earlier bake has put inside."""
+    if not parts:
+        return []
+    lines = [f"    {part.name:<12}{part.text}, {part.n_bytes:,} bytes" for part in parts]
+    return ["  baked light inside:", *lines]
 
 
 def _materials(facts: SceneFacts) -> list[str]:

@@ -46,22 +46,33 @@ def add_field(json: Json, slots: Slots, data: bytes) -> None:
     root["field"] = entry
 
 
+def baked_field_bytes(document: GltfDocument) -> bytes | None:
+    """The file of a baked document's field as it lies there, or None where it has none.
+
+    Raises:
+        InputError: The document is damaged.
+    """
+    entry = _entry(document)
+    if entry is None:
+        return None
+    data = Accessors(document).read_view(entry.integer("bufferView"))
+    if len(data) > MAX_BYTES:
+        raise InputError(f"expected at most {MAX_BYTES} bytes, found {len(data)}", where=entry.pointer)
+    return bytes(data)
+
+
 def read_baked_field(document: GltfDocument) -> StoredField | None:
     """The field of a baked document, or None where it has none.
 
     Raises:
         InputError: It is damaged, or isn't what the document says.
     """
-    extension = JsonView(document.json).extension(NAME)
-    if extension is None or not extension.has("field"):
+    entry, data = _entry(document), baked_field_bytes(document)
+    if entry is None or data is None:
         return None
-    entry = extension.object("field")
-    data = Accessors(document).read_view(entry.integer("bufferView"))
-    if len(data) > MAX_BYTES:
-        raise InputError(f"expected at most {MAX_BYTES} bytes, found {len(data)}", where=entry.pointer)
     mime_type = entry.choice("mimeType", (PLAIN, PACKED))
-    stored = decode_field(bytes(data), entry.pointer)
-    is_packed = bytes(data[:4]) == ZSTD_MAGIC
+    stored = decode_field(data, entry.pointer)
+    is_packed = data[:4] == ZSTD_MAGIC
     low, high = stored.field.frame.aabb.tolist()
     says = (
         mime_type == PACKED,
@@ -74,6 +85,12 @@ def read_baked_field(document: GltfDocument) -> StoredField | None:
     if says != holds:
         raise InputError("what it says of its field isn't what the field's file says", where=entry.pointer)
     return stored
+
+
+def _entry(document: GltfDocument) -> JsonView | None:
+    """What a document says of its field."""
+    extension = JsonView(document.json).extension(NAME)
+    return extension.object("field") if extension is not None and extension.has("field") else None
 
 
 def read_baked_document(source: Path | str) -> GltfDocument:

@@ -19,6 +19,7 @@ from irradia.export.container import glb_container
 from irradia.export.direct_extension import add_direct
 from irradia.export.directional_extension import add_directional
 from irradia.export.earlier_bake import remove_earlier_bake
+from irradia.export.field_extension import add_field
 from irradia.export.instances import GPU_INSTANCING, write_out_gpu_instances
 from irradia.export.lighting_extension import InstanceTables, bind_node
 from irradia.export.meshes import MeshVersions, freed_accessors, freed_materials, primitive_texcoord
@@ -48,12 +49,14 @@ class Companions:
         direct: (P, H, W, 3) E/π: the part of the lightmap that fields of indirect light lack.
         shadows: What arrives of the lights that shine live.
         probes: Light where nothing is baked.
+        field: The file of a neural field.
     """
 
     directional: DirectionalMaps | None = None
     direct: NDArray[np.float32] | None = None
     shadows: BakedShadows | None = None
     probes: ProbeSet | None = None
+    field: bytes | None = None
 
 
 def write_baked_glb(
@@ -184,6 +187,8 @@ class _Export:
         add_shadow_mask(self.json, self._slots, self._scene.lights, companions.shadows)
         if companions.probes is not None:
             add_probes(self.json, self._slots, companions.probes)
+        if companions.field is not None:
+            add_field(self.json, self._slots, companions.field)
 
     def run_without_light(self) -> bytes:
         """Like :meth:`run`, with the pages in materials alone and all lights on their nodes."""
