@@ -9,13 +9,14 @@ BIN := .venv/bin
 OUT ?= out/demo
 PYTEST_ARGS ?=
 
-.PHONY: help setup setup-dev demo test check bench
+.PHONY: help setup setup-dev viewer demo test check bench
 
 help:
 	@echo "make demo    bake our own scene and write everything, with report, to $(OUT)"
 	@echo "make test    run every test"
 	@echo "make check   lint, types and layers, Python and TypeScript"
 	@echo "make bench   run the benchmarks, peers included"
+	@echo "make viewer  build the viewer that \`irradia view\` shows"
 	@echo "make setup   only what running needs; the others call it"
 
 setup:
@@ -23,6 +24,9 @@ setup:
 
 setup-dev:
 	@$(PYTHON) scripts/setup.py --dev
+
+viewer:
+	@$(PYTHON) scripts/setup.py --viewer
 
 demo: setup
 	@$(BIN)/irradia demo --out $(OUT)

@@ -1,4 +1,4 @@
-"""Sets up a checkout: virtual environment, pinned packages, libLLVM; with --dev also node and a browser.
+"""Sets up a checkout: virtual environment, pinned packages, libLLVM, the viewer; with --dev also a browser.
 
 Standard library only, and run again at no cost: what is done is stamped. Installs system packages
 where it may (root, or sudo without a password) and otherwise prints the line to run.
@@ -31,17 +31,22 @@ def main() -> int:
     """Runs the steps that are not yet done."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--dev", action="store_true", help="also what the tests need")
-    wants_dev = parser.parse_args().dev
+    parser.add_argument("--viewer", action="store_true", help="only the viewer, which must be built then")
+    asked = parser.parse_args()
     try:
+        if asked.viewer:
+            make_viewer()
+            return 0
         check_python()
         make_environment()
-        install_packages(wants_dev)
+        install_packages(asked.dev)
         ensure_libatomic()
         ensure_libllvm()
-        if wants_dev:
-            ensure_node()
+        if asked.dev:
             ensure_chromium()
-            install_web()
+            make_viewer()
+        else:
+            try_viewer()
     except SetupError as error:
         print(f"setup: {error}", file=sys.stderr)
         return 1
@@ -114,6 +119,21 @@ def ensure_libllvm() -> None:
     raise SetupError("no libLLVM that works; run the line above, then this again.")
 
 
+def try_viewer() -> None:
+    """The viewer where it can be built; all else works without it."""
+    try:
+        make_viewer()
+    except SetupError as error:
+        say(f"going on without the viewer; `make viewer` tries again. {error}")
+
+
+def make_viewer() -> None:
+    """The viewer, with what building it needs."""
+    ensure_node()
+    install_web()
+    build_viewer()
+
+
 def ensure_node() -> None:
     """Node.js and npm for web/."""
     if not (ROOT / "web" / "package-lock.json").exists():
@@ -143,6 +163,32 @@ def install_web() -> None:
     if run([npm, "ci", "--no-audit", "--no-fund", "--prefix", str(lock.parent)]) != 0:
         raise SetupError("npm ci failed in web/; see above.")
     stamp("web", label)
+
+
+def build_viewer() -> None:
+    """The viewer and the packages that it is made from, as their sources are now."""
+    web = ROOT / "web"
+    if not (web / "viewer" / "build.js").exists():
+        return
+    label = fingerprint(*viewer_sources(web))
+    if is_stamped("viewer", label) and (web / "viewer" / "dist" / "index.html").is_file():
+        return
+    say("viewer")
+    npm = shutil.which("npm") or "npm"
+    if run([npm, "run", "--silent", "build", "--workspaces", "--prefix", str(web)]) != 0:
+        raise SetupError("the viewer can't be built; see above.")
+    stamp("viewer", label)
+
+
+def viewer_sources(web: Path) -> list[Path]:
+    """Every file that the viewer is made from."""
+    folders = [web / "viewer", *(web / "packages").iterdir()]
+    made = {"dist", "build", "test", "node_modules"}
+    found = (path for folder in folders for path in folder.rglob("*") if path.is_file())
+    return [
+        web / "package-lock.json",
+        *sorted(path for path in found if not made & set(path.relative_to(web).parts)),
+    ]
 
 
 # -- System packages ---------------------------------------------------------------------------
