@@ -110,6 +110,19 @@ def test_ctrl_c_says_how_to_go_on(command_that, capfd):
     assert "run again to go on" in capfd.readouterr().err
 
 
+def test_an_interrupted_commands_json_says_so_however_it_ended(command_that, capfd):
+    from irradia.cli.output import finish
+
+    def at_once():
+        raise KeyboardInterrupt
+
+    for body in (at_once, lambda: finish(True, {"complete": False}, "", app.INTERRUPTED)):
+        command_that(body)
+        assert app.run(["doctor", "--json"]) == app.INTERRUPTED == 130
+        said = json.loads(capfd.readouterr().out)
+        assert (said["ok"], said["interrupted"]) == (False, True)
+
+
 def test_json_is_one_object_whatever_libraries_print(command_that, capfd):
     def body():
         from irradia.cli.output import finish
@@ -121,7 +134,7 @@ def test_json_is_one_object_whatever_libraries_print(command_that, capfd):
     command_that(body)
     assert app.run(["doctor", "--json"]) == 0
     shown = capfd.readouterr()
-    assert json.loads(shown.out) == {"ok": True, "value": None}
+    assert json.loads(shown.out) == {"value": None, "ok": True, "interrupted": False}
     assert shown.err.count("chatter") == 2
 
 

@@ -12,7 +12,7 @@ from typing import NoReturn
 import click
 
 from irradia import __version__
-from irradia.cli.output import INTERRUPTED, reserve_stdout, write_json
+from irradia.cli.output import INTERRUPTED, outcome, reserve_stdout, write_json
 from irradia.core.errors import InputError, IrradiaError
 from irradia.core.files import disk_problem, place_problem
 
@@ -125,5 +125,6 @@ def _fail(wants_json: bool, message: str, code: int, where: str | None = None) -
     click.echo(f"irradia: {message}", err=True)
     if wants_json:
         with contextlib.suppress(OSError):  # where stdout is what is full
-            write_json({"ok": False, "error": {"message": message, "where": where, "exit_code": code}})
+            error = {"message": message, "where": where, "exit_code": code}
+            write_json({**outcome(code), "error": error})
     return code

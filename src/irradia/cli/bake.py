@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from irradia.cli import options
-from irradia.cli.output import INTERRUPTED, finish
+from irradia.cli.output import code_of, finish
 from irradia.cli.sections import SectionedCommand
 
 if TYPE_CHECKING:
@@ -126,12 +126,10 @@ def command(as_json: bool, **choices: Any) -> int:
     job = make_job(**choices)
     if job.shard is not None:
         path = run_shard(job, stderr_progress())
-        finish(as_json, {"shard": str(path)}, f"Shard {job.shard[0]} of {job.shard[1]}: {path}")
-        return 0
+        return finish(as_json, {"shard": str(path)}, f"Shard {job.shard[0]} of {job.shard[1]}: {path}")
     summary = run_bake(job, stderr_progress())
     result = {**summary.record, "out": str(job.out), "files": list(summary.files)}
-    finish(as_json, result, describe(job, summary))
-    return 0 if summary.complete else INTERRUPTED
+    return finish(as_json, result, describe(job, summary), code_of(summary.complete))
 
 
 def make_job(

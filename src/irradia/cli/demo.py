@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from irradia.cli import options
-from irradia.cli.output import finish
+from irradia.cli.output import code_of, finish
 
 SCENE = "builtin:atrium"
 N_PIXELS = 640 * 360  # of the report's pictures: the references take half of the demo's three minutes
@@ -26,9 +26,7 @@ N_PIXELS = 640 * 360  # of the report's pictures: the references take half of th
 @options.device_option
 @options.threads_option
 @options.json_option
-def command(
-    as_json: bool, out: Path, reference_spp: int, seed: int, device: str, threads: int | None
-) -> None:
+def command(as_json: bool, out: Path, reference_spp: int, seed: int, device: str, threads: int | None) -> int:
     """Bake a scene of our own and train a field from it, with report."""
     from irradia.bake.lightmap import BakeOptions
     from irradia.cli.bake import describe
@@ -51,4 +49,4 @@ def command(
     summary = run_bake(job, progress)
     progress.say(f"Open {out.resolve() / 'report.html'} in a browser.\n")
     result = {**summary.record, "out": str(out), "files": list(summary.files)}
-    finish(as_json, result, describe(job, summary))
+    return finish(as_json, result, describe(job, summary), code_of(summary.complete))

@@ -25,12 +25,12 @@ def command(as_json: bool) -> int:
     lines = [line for check in checks for line in _lines(check)]
     verdict = "Ready to bake." if not missing else f"Not ready: {len(missing)} to mend, see above."
     fields, table = _fields()
-    finish(
+    return finish(
         as_json,
         {"ready": not missing, "checks": [asdict(check) for check in checks], "field_backends": fields},
         "\n".join([*lines, "", table, verdict]),
+        2 if missing else 0,
     )
-    return 2 if missing else 0
 
 
 def _lines(check: Check) -> list[str]:

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from irradia.cli import options
-from irradia.cli.output import finish
+from irradia.cli.output import code_of, finish
 
 
 @click.command("merge")
@@ -27,7 +27,7 @@ def command(
     no_report: bool,
     device: str,
     threads: int | None,
-) -> None:
+) -> int:
     """Join the shards of one bake.
 
     SHARDS are the files that ``irradia bake --shard I/N`` wrote, in any order. The results
@@ -47,4 +47,4 @@ def command(
     job = replace(job, shard=None, views=views, device=device, threads=threads)
     summary = run_bake(job, stderr_progress(), shards=parts)
     result: dict[str, Any] = {**summary.record, "out": str(out), "files": list(summary.files)}
-    finish(as_json, result, describe(job, summary))
+    return finish(as_json, result, describe(job, summary), code_of(summary.complete))

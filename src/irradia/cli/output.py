@@ -44,12 +44,27 @@ def write_json(value: Mapping[str, Any]) -> None:
         click.echo(text, nl=False)
 
 
-def finish(as_json: bool, result: Mapping[str, Any], text: str) -> None:
-    """Ends a command: the result as JSON, or the text for people."""
+def finish(as_json: bool, result: Mapping[str, Any], text: str, code: int = 0) -> int:
+    """Ends a command: the result as JSON, or the text for people; returns the exit code.
+
+    Every command's JSON says alike how it ended: ``ok`` where it exits with 0, and ``interrupted`` where
+    Ctrl-C has ended it early. What an interrupted run tells of its results is good as far as it goes.
+    """
     if as_json:
-        write_json({"ok": True, **result})
+        write_json({**result, **outcome(code)})
     else:
         click.echo(text)
+    return code
+
+
+def outcome(code: int) -> dict[str, bool]:
+    """What an exit code says, as it stands in every command's JSON."""
+    return {"ok": code == 0, "interrupted": code == INTERRUPTED}
+
+
+def code_of(complete: bool) -> int:
+    """The exit code of a run that came to its end, or that Ctrl-C ended with usable results."""
+    return 0 if complete else INTERRUPTED
 
 
 def _finite(value: Any) -> Any:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from irradia.cli import options
-from irradia.cli.output import INTERRUPTED, finish
+from irradia.cli.output import code_of, finish
 from irradia.cli.sections import SectionedCommand
 
 if TYPE_CHECKING:
@@ -109,8 +109,7 @@ def command(as_json: bool, **choices: Any) -> int:
 
     job = make_job(**choices)
     result = run_sampling(job, stderr_progress())
-    finish(as_json, result, describe(result))
-    return 0 if result["complete"] else INTERRUPTED
+    return finish(as_json, result, describe(result), code_of(result["complete"]))
 
 
 def make_job(

@@ -69,8 +69,7 @@ def command(as_json: bool, **choices: Any) -> int:
     from irradia.core.progress import stderr_progress
 
     result = run_sweep(_job(**choices), stderr_progress())
-    finish(as_json, result, describe(result))
-    return _exit_code(result)
+    return finish(as_json, result, describe(result), _exit_code(result))
 
 
 def _exit_code(result: dict[str, Any]) -> int:

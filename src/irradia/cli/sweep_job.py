@@ -237,7 +237,6 @@ def _summary(sweep: Sweep, board: _Board, complete: bool) -> dict[str, Any]:
         if row["status"] == "failed"
     ]
     return {
-        "ok": not failed,
         "out": str(sweep.out),
         "grid": sweep.grid,
         "complete": complete,

@@ -10,7 +10,7 @@ from click.core import ParameterSource
 
 from irradia.cli import options
 from irradia.cli.bin_samples import bin_options, bin_sample_options
-from irradia.cli.output import INTERRUPTED, finish
+from irradia.cli.output import code_of, finish
 from irradia.cli.sections import SectionedCommand
 
 if TYPE_CHECKING:
@@ -273,8 +273,7 @@ def command(ctx: click.Context, as_json: bool, **_: Any) -> int:
     from irradia.cli.train_run import run_training
 
     result = run_training(job, stderr_progress())
-    finish(as_json, result, describe(result))
-    return 0 if result["complete"] else INTERRUPTED
+    return finish(as_json, result, describe(result), code_of(result["complete"]))
 
 
 def job_of(ctx: click.Context) -> TrainJob:
