@@ -8,7 +8,7 @@ import type {
   Rectangle,
   TextureLimits,
 } from "@irradia/runtime";
-import type { Group, Mesh, Object3D, Texture } from "three";
+import type { Group, Light, Material, Mesh, Object3D, Texture } from "three";
 import type { GLTFLoaderPlugin, GLTFParser } from "three/addons/loaders/GLTFLoader.js";
 
 /**
@@ -29,7 +29,9 @@ export interface LightSource {
    * none of ours.
    */
   readonly shader: LightShader | undefined;
-  /** Whether it needs position and normal alone, so that it also lights what moves or has no lightmap uv. */
+  /** The same without the file's map of direct light, as what moves is lit. */
+  readonly bare: LightShader | undefined;
+  /** Whether, bare, it needs position and normal alone, so that it also lights what moves or has no lightmap uv. */
   readonly isDynamic: boolean;
 }
 
@@ -43,7 +45,7 @@ export interface LightSource {
  * | `albedo` | the diffuse colour |
  * | `normal` | the shading normal in world space, n/2 + 1/2 |
  * | `depth` | distance along the view, 0 at the near plane and 1 at the far one, linear |
- * | `lightmap-uv` | a checker of 16 texels a field in the page's uv; black without a lightmap |
+ * | `lightmap-uv` | a checker of 4 × 4 texels a field, tinted by the page's uv; black without a lightmap |
  * | others | functions of the source in use, as `LightShader.views` lists them; magenta where it lacks one |
  */
 export type View = LightView | "irradiance" | "albedo" | "normal" | "depth" | "lightmap-uv";
@@ -98,14 +100,17 @@ export interface SceneLight {
   readonly sources: readonly LightSource[];
   /** What lights static meshes now. */
   readonly source: LightSource;
-  /** Switches static meshes to another source. Throws InputError for a name that there isn't. */
+  /**
+   * Switches static meshes to another source. Each mesh gets a copy of its material for each source and view that
+   * it was shown with, so going back and forth compiles nothing. Throws InputError for a name that there isn't.
+   */
   use(name: string): void;
   /** Adds a source, or replaces the one of this name; `kind` is "field" by default. */
   add(name: string, shader: LightShader, kind?: SourceKind): LightSource;
   /** Takes an added source off; static meshes go back to the first source if it was theirs. */
   remove(name: string): void;
 
-  /** Lights an object, its children too, by the dynamic source, wherever it moves; its materials are shared. */
+  /** Lights an object, its children too, by the dynamic source, wherever it moves. */
   lit(object: Object3D): void;
   /** Takes an object's light away again. */
   unlit(object: Object3D): void;
@@ -127,11 +132,21 @@ export interface SceneLight {
 
   /**
    * E by pixel, in W·m⁻², in place of sources: set by full-screen passes, which evaluate sources themselves.
-   * Has the size of what is drawn, texel under pixel, y down as in glTF.
+   * Has the size of what is drawn, texel under pixel, as one of the renderer's own targets. Where the source in use
+   * takes its direct light from a map, materials add that themselves: passes evaluate `source.bare`.
    */
   screen: Texture | null;
   /** All meshes that the light shines on now. */
   readonly surfaces: readonly LitSurface[];
+  /**
+   * The file's punctual lights. Those whose light is baked shine only where the source leaves their first bounce
+   * out and no map has it. `visible` is switched with the source; shadows are the page's affair.
+   */
+  readonly lights: readonly Light[];
+  /** Call after changing a material of the scene, so that its copies for other sources and views follow. */
+  refresh(): void;
+  /** The material that came with the file, whose copy a mesh shows. */
+  originalOf(material: Material): Material;
 
   /** Of textures and uniforms made so far, on the GPU. */
   readonly bytes: number;

@@ -1,0 +1,58 @@
+/** Punctual lights of a file: those that the bake left to the engine, and those whose light is baked. */
+import { EXTENSION } from "@irradia/runtime";
+import type { Light, Object3D } from "three";
+import type { GLTFParser } from "three/addons/loaders/GLTFLoader.js";
+
+const PUNCTUAL = "KHR_lights_punctual";
+
+interface NodeDefinition {
+  extensions?: Record<string, { light?: number; bakedLight?: number }>;
+}
+
+/**
+ * Puts baked lights back on their nodes in the document, before GLTFLoader reads it, so that it makes them like
+ * the others. Returns the nodes.
+ *
+ * @param nLights how many lights the document defines
+ */
+export function restoreBakedLights(nodes: readonly NodeDefinition[], nLights: number): ReadonlySet<number> {
+  const restored = new Set<number>();
+  nodes.forEach(({ extensions }, index) => {
+    const light = extensions?.[EXTENSION]?.bakedLight;
+    const isThere = Number.isInteger(light) && Number(light) >= 0 && Number(light) < nLights;
+    if (!extensions || extensions[PUNCTUAL] || !isThere) return;
+    extensions[PUNCTUAL] = { light: Number(light) };
+    restored.add(index);
+  });
+  return restored;
+}
+
+export class FileLights {
+  readonly #live: Light[] = [];
+  readonly #baked: Light[] = [];
+
+  constructor(scene: Object3D, parser: GLTFParser, restored: ReadonlySet<number>) {
+    const visit = (object: Object3D, isBaked: boolean): void => {
+      const node = parser.associations.get(object)?.nodes;
+      const isMine = node === undefined ? isBaked : restored.has(node);
+      if ((object as Light).isLight) (isMine ? this.#baked : this.#live).push(object as Light);
+      for (const child of object.children) visit(child, isMine);
+    };
+    visit(scene, false);
+    for (const light of this.#baked) light.visible = false;
+  }
+
+  get all(): readonly Light[] {
+    return [...this.#live, ...this.#baked];
+  }
+
+  get nLive(): number {
+    return this.#live.length;
+  }
+
+  /** Which of them shine, so that each light's first bounce counts once. */
+  shine({ baked, live }: { readonly baked: boolean; readonly live: boolean }): void {
+    for (const light of this.#baked) light.visible = baked;
+    for (const light of this.#live) light.visible = live;
+  }
+}

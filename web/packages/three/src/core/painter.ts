@@ -1,0 +1,40 @@
+/** What the two renderers do differently. */
+import type { LightShader, Probes, TextureLimits } from "@irradia/runtime";
+import type { Material, Object3D, Texture } from "three";
+import type { View } from "../types.js";
+
+/** How a material is to show its light. */
+export interface Shading {
+  /** Whence E comes; undefined is no light of ours. */
+  readonly light: LightShader | ScreenLight | undefined;
+  /** Direct light that a screen light leaves to the material. */
+  readonly direct: LightShader | undefined;
+  readonly view: View | null;
+  /** Width and height of the page, where geometries drawn with it carry LIGHTMAP_ATTRIBUTES. */
+  readonly lightmap: readonly [number, number] | undefined;
+}
+
+/** Texels of the lightmap along a field of the checker that shows its uv. */
+export const CHECKER_TEXELS = 4;
+
+/** E by pixel; `texture` may be exchanged while materials draw with it. */
+export class ScreenLight {
+  constructor(public texture: Texture) {}
+}
+
+/** Writes light into materials; one for each scene. */
+export interface Painter {
+  readonly limits: TextureLimits;
+  /** Factor on E, read at each frame. */
+  intensity: number;
+  /**
+   * Makes a fresh copy of `original` show its light so.
+   *
+   * @param key the same for the same shading, and for no other
+   */
+  paint(copy: Material, original: Material, shading: Shading, key: string): void;
+  /** The texture behind a screen light was exchanged. */
+  screenChanged(screen: ScreenLight): void;
+  /** three.js' own grid of light probes, filled from a grid of ours. */
+  probeGrid(probes: Probes): Object3D;
+}

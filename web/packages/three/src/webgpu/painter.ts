@@ -1,0 +1,99 @@
+/** Light in the materials of WebGPURenderer, by their context's getGI. */
+import type { LightShader, LightView, Probes, TextureLimits } from "@irradia/runtime";
+import type { Material, Object3D } from "three";
+import { context, Fn, renderGroup, screenUV, texture, uniform, vec3, vec4 } from "three/tsl";
+import type { Node, NodeBuilder, TextureNode } from "three/webgpu";
+import { type Painter, ScreenLight, type Shading } from "../core/painter.js";
+import type { Inputs } from "../types.js";
+import { lightNode } from "./bind.js";
+import { inputsOf } from "./inputs.js";
+import { probeGrid } from "./probe-grid.js";
+import { commonView, MISSING_VIEW } from "./views.js";
+
+type Vec3Node = Node<"vec3">;
+
+/** What a lit material's nodes find while their shader is built. */
+interface LightingContext {
+  readonly ambientOcclusion: Node<"float">;
+  readonly iblIrradiance: Vec3Node;
+}
+
+/** Any material becomes a node material when it is drawn, with these properties among the others. */
+interface NodeSlots {
+  contextNode: Node;
+  outputNode: Node;
+}
+
+/** So that a material without ambient light at all still divides. */
+const LEAST_OCCLUSION = 1e-3;
+
+export class WebGPUPainter implements Painter {
+  readonly #intensity = uniform(1).setGroup(renderGroup);
+  readonly #screens = new WeakMap<ScreenLight, TextureNode>();
+
+  constructor(readonly limits: TextureLimits) {}
+
+  get intensity(): number {
+    return this.#intensity.value;
+  }
+
+  set intensity(factor: number) {
+    this.#intensity.value = factor;
+  }
+
+  paint(copy: Material, original: Material, shading: Shading, key: string): void {
+    const slots = copy as Material & Partial<NodeSlots>;
+    if (shading.light) slots.contextNode = context({ getGI: () => this.#indirect(shading) });
+    if (shading.view) slots.outputNode = this.#view(shading);
+    copy.customProgramCacheKey = () => `${original.customProgramCacheKey()}|${key}`;
+  }
+
+  screenChanged(screen: ScreenLight): void {
+    this.#screenNode(screen).value = screen.texture;
+  }
+
+  probeGrid(probes: Probes): Object3D {
+    return probeGrid(probes);
+  }
+
+  /** E as three.js is to add it to its irradiance, once that holds the rest. */
+  #indirect(shading: Shading): Vec3Node {
+    return Fn((builder: NodeBuilder) => {
+      const { ambientOcclusion, iblIrradiance } = builder.context as LightingContext;
+      // All indirect light is multiplied by the occlusion, which baked light holds already. It holds the sky as
+      // well: the environment's diffuse light goes by the very formula that it came in by.
+      return this.#irradiance(shading, builder).div(ambientOcclusion.max(LEAST_OCCLUSION)).sub(iblIrradiance);
+    })() as Vec3Node;
+  }
+
+  #irradiance(shading: Shading, builder: NodeBuilder): Vec3Node {
+    return this.#unscaled(shading, inputsOf(builder, shading.lightmap !== undefined)).mul(this.#intensity);
+  }
+
+  #unscaled({ light, direct }: Shading, inputs: Partial<Inputs<Node>>): Vec3Node {
+    if (!light) return vec3(0);
+    if (!(light instanceof ScreenLight)) return lightNode(light, inputs);
+    const { rgb } = this.#screenNode(light).sample(screenUV) as Node<"vec4">;
+    return direct ? rgb.add(lightNode(direct, inputs)) : rgb;
+  }
+
+  #view(shading: Shading): Node {
+    return Fn((builder: NodeBuilder) => vec4(this.#viewOf(shading, builder), 1))();
+  }
+
+  #viewOf(shading: Shading, builder: NodeBuilder): Vec3Node {
+    const { light, view, lightmap } = shading;
+    if (view === "irradiance") return this.#irradiance(shading, builder).div(Math.PI) as Vec3Node;
+    const common = commonView(view, builder, lightmap);
+    if (common) return common;
+    const hasView = light && !(light instanceof ScreenLight) && light.views[view as LightView];
+    if (!hasView) return MISSING_VIEW;
+    return lightNode(light as LightShader, inputsOf(builder, lightmap !== undefined), view as LightView);
+  }
+
+  #screenNode(screen: ScreenLight): TextureNode {
+    const node = this.#screens.get(screen) ?? texture(screen.texture);
+    this.#screens.set(screen, node as TextureNode);
+    return node as TextureNode;
+  }
+}
