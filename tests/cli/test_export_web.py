@@ -227,3 +227,17 @@ def test_a_scene_without_baked_light_is_refused(export, viewer: Path, tmp_path: 
     assert code == 2
     assert "expected a baked scene" in said["error"]["message"]
     assert not (tmp_path / "site").exists()
+
+
+def test_a_single_file_works_from_disk(export, baked: Path, tmp_path: Path, chromium: str) -> None:
+    from irradia.cli.gallery_browser import open_page
+
+    export(baked, "--single-file", tmp_path / "ä #1.html")
+    with open_page(32, 32) as page:
+        page.go((tmp_path / "ä #1.html").as_uri())
+        page.wait_for("document.documentElement?.dataset.state !== 'loading'", 30.0)
+        shown = json.loads(page.evaluate("document.body.textContent"))
+        assert page.complaints == []
+    manifest, files = embedded((tmp_path / "ä #1.html").read_text())
+    assert shown["sizes"] == {url: len(files[url]) for url in urls(manifest)}
+    assert shown["remark"] == "</script><!-- in a text"

@@ -32,6 +32,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "eval": ("eval", "A field against the path-traced reference."),
     "export": ("export", "Write a field in another format, smaller, or into a baked scene."),
     "view": ("view", "Show baked light in the browser."),
+    "gallery": ("gallery", "Show every field of a folder from the same camera, side by side."),
     "compare": ("compare", "Metrics between two images or lightmaps."),
 }
 

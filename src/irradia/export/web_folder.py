@@ -57,9 +57,15 @@ def collect(paths: Sequence[Path], fields: Sequence[Path] = ()) -> WebCollection
     return WebCollection(title, tuple(shown))
 
 
-def find_fields(folder: Path) -> tuple[Path, ...]:
-    """The files of weights in a folder, by name; a .bin that is something else is left out."""
-    return tuple(path for path in sorted(folder.iterdir()) if path.is_file() and _is_field(path))
+def find_fields(folder: Path, *, deep: bool = False) -> tuple[Path, ...]:
+    """The files of weights in a folder, by name; a .bin that is something else is left out.
+
+    Args:
+        folder: Where to look.
+        deep: In folders within it as well.
+    """
+    there = folder.rglob("*") if deep else folder.iterdir()
+    return tuple(path for path in sorted(there) if path.is_file() and _is_field(path))
 
 
 def _find(path: Path) -> Found:
