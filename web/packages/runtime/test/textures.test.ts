@@ -27,7 +27,8 @@ import { Random } from "./random.js";
 import { decoder, readAny, vector, vectors } from "./vectors.js";
 
 const unzstd = await decoder();
-const TINY: TextureLimits = { maxSize: 9, maxLayers: 256, maxUniformBytes: 64 };
+const TINY: TextureLimits = { maxSize: 9, maxLayers: 256, maxUniformBytes: 65536 };
+const NO_UNIFORMS: TextureLimits = { ...WEBGL2_LIMITS, maxUniformBytes: 64 };
 
 function fieldOf(name: string): Field {
   const { file, bytes } = vector(name);
@@ -160,7 +161,7 @@ for (const { name } of vectors()) {
       const weight = tensorValues(field.tensors.get(`mlp.${i}.weight`) ?? assert.fail());
       const bias = tensorValues(field.tensors.get(`mlp.${i}.bias`) ?? assert.fail());
       const inputs = Array.from({ length: layer.nInputs }, (_, j) => Math.sin(j + 1));
-      const blocksIn = Math.ceil(layer.nInputs / 4);
+      const { blocksIn } = layer;
       for (let row = 0; row < layer.nOutputs; row++) {
         const [block, component] = [Math.floor(row / 4), row % 4];
         let sum = constants[4 * (layer.firstBias + block) + component] ?? Number.NaN;
@@ -192,7 +193,8 @@ test("tables cost on the GPU what they cost on disk, up to a row", () => {
 test("constants leave the uniform buffer when they don't fit", () => {
   const field = fieldOf("hash-int4");
   assert.equal(planFieldTextures(field, WEBGL2_LIMITS).constants.texture, undefined);
-  assert.equal(planFieldTextures(field, TINY).constants.texture?.format, "rgba32float");
+  const { texture } = planFieldTextures(field, NO_UNIFORMS).constants;
+  assert.deepEqual([texture?.format, texture?.width], ["rgba32float", 256]);
 });
 
 test("a field too large for a device is refused with the device's limit", () => {

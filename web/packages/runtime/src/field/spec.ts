@@ -130,12 +130,17 @@ export function expectBox(min: Vec3, max: Vec3, where: string): void {
   expect(fits, `expected a box, found ${min} to ${max}`, where);
 }
 
+/** The box's sides, metres, as floats; flat ones get a little, to divide by. */
+export function extentOf({ min, max }: FieldFrame): [number, number, number] {
+  const extent = (axis: 0 | 1 | 2): number => Math.max(Math.fround(max[axis] - min[axis]), 1e-12);
+  return [extent(0), extent(1), extent(2)];
+}
+
 /** A place in metres in [0, 1]³ of the box, as floats compute it; what lies outside is clamped. */
 export function toUnit(frame: FieldFrame, position: Vec3): [number, number, number] {
+  const extent = extentOf(frame);
   const unit = (axis: 0 | 1 | 2): number => {
-    const low = frame.min[axis];
-    const extent = Math.max(Math.fround(frame.max[axis] - low), 1e-12);
-    const x = Math.fround(Math.fround(Math.fround(position[axis]) - low) / extent);
+    const x = Math.fround(Math.fround(Math.fround(position[axis]) - frame.min[axis]) / extent[axis]);
     return Math.min(Math.max(x, 0), 1);
   };
   return [unit(0), unit(1), unit(2)];

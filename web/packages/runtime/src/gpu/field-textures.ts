@@ -10,16 +10,18 @@
  * two, so that entries never straddle words; feature f of an entry begins at bit f · bits, the first at the
  * lowest.
  *
- * **Constants** are one list of vec4s: the perceptron in floats, then the scales of codes. It fits a uniform
- * buffer in most cases, else a texture.
+ * **Constants** are one list of vec4s: what all fields have (`shaders/wgsl/field.wgsl` says which four), the
+ * perceptron in floats, the scales of codes, and a record of each encoding. It fits a uniform buffer in most
+ * cases, else a texture.
  */
-import type { Encoding } from "../field/encoding.js";
-import { Composite } from "../field/encodings/composite.js";
 import { TriPlane } from "../field/encodings/tri-plane.js";
 import { type Field, tensorOf } from "../field/field.js";
 import { layerShapes } from "../field/spec.js";
 import { bitsPerValue, type Tensor } from "../field/tensor.js";
-import { product } from "../numbers.js";
+import { isPowerOfTwo, product } from "../numbers.js";
+import type { EncodingPlace } from "./encodings/encoding-shader.js";
+import { encodingShader } from "./encodings/registry.js";
+import { type EncodingLeaf, encodingLeaves } from "./leaves.js";
 import {
   planList,
   planTexture,
@@ -71,11 +73,17 @@ export interface TableTexture {
   readonly tensors: readonly TablePlacement[];
 }
 
-/** One matrix of the perceptron, in blocks of 4 × 4; missing rows and columns are zeros. */
+/**
+ * One matrix of the perceptron, in blocks of 4 × 4; missing rows and columns are zeros. Hidden layers are padded
+ * to a width that shaders have, `PADDED_WIDTHS`.
+ */
 export interface LayerPlacement {
   readonly nInputs: number;
   readonly nOutputs: number;
-  /** Column c of block (i outputs, j inputs), both by fours: vec4 `firstWeight + 4 (i · ⌈nInputs / 4⌉ + j) + c`. */
+  /** Blocks side by side, for the inputs, and one below another, for the outputs. */
+  readonly blocksIn: number;
+  readonly blocksOut: number;
+  /** Column c of block (i outputs, j inputs), both by fours: vec4 `firstWeight + 4 (i · blocksIn + j) + c`. */
   readonly firstWeight: number;
   /** Biases of outputs 4 i to 4 i + 3: vec4 `firstBias + i`. */
   readonly firstBias: number;
@@ -88,9 +96,18 @@ export interface ConstantsPlan {
   /** Where scales begin: scale s is component s mod 4 of vec4 `scalesVec4 + ⌊s / 4⌋`. */
   readonly scalesVec4: number;
   readonly nScales: number;
-  /** Absent where the list fits a uniform buffer. An rgba32float list otherwise. */
+  /** First vec4 of each encoding's record, in the order of `encodingLeaves`. */
+  readonly records: readonly number[];
+  /** Absent where the list fits a uniform buffer. Otherwise rgba32float, 256 columns, row by row. */
   readonly texture?: TexturePlan;
 }
+
+/** Of hidden layers in shaders; others are padded with zeros to the next. */
+export const PADDED_WIDTHS = [16, 32, 64, 128] as const;
+
+/** Vec4s before the perceptron. */
+const HEADER = 4;
+const CONSTANTS_COLUMNS = 256;
 
 /** All that a shader needs to find a field's weights. */
 export interface FieldTextures {
@@ -105,40 +122,45 @@ export interface FieldTextures {
  */
 export function planFieldTextures(field: Field, limits: TextureLimits): FieldTextures {
   let nScales = 0;
-  const tables = learnedEncodings(field).map((learned) => {
-    const table = planTable(field, learned, nScales, limits);
-    for (const placed of table.tensors) nScales += scaleCount(field, placed);
-    return table;
-  });
-  return { tables, constants: planConstants(field, nScales, limits) };
+  const leaves = encodingLeaves(field.spec);
+  const tables = leaves
+    .filter(({ encoding }) => encoding.slots.length)
+    .map((leaf) => {
+      const table = planTable(field, leaf, nScales, limits);
+      for (const placed of table.tensors) nScales += scaleCount(field, placed);
+      return table;
+    });
+  return { tables, constants: planConstants(field, leaves, tables, nScales, limits) };
 }
 
-interface LearnedEncoding {
-  readonly owner: string;
-  readonly encoding: Encoding;
+/** Where an encoding's parts are, for its record. */
+export function placeOf(
+  leaf: EncodingLeaf,
+  tables: readonly TableTexture[],
+  scalesVec4: number,
+): EncodingPlace {
+  const table = tables.find(({ owner }) => owner === leaf.owner);
+  return { firstColumn: leaf.firstColumn, table, firstScale: 4 * scalesVec4 };
 }
 
-/** Encodings with tables; composites in their parts. */
-function learnedEncodings({ spec }: Field): LearnedEncoding[] {
-  const leaves = (owner: string, encoding: Encoding): LearnedEncoding[] => {
-    const isComposite = encoding instanceof Composite;
-    if (isComposite) return encoding.parts.flatMap((part, i) => leaves(`${owner}.${i}`, part));
-    return encoding.slots.length ? [{ owner, encoding }] : [];
-  };
-  const direction = spec.direction ? leaves("direction", spec.direction) : [];
-  return [...leaves("position", spec.position), ...direction];
+/** The width that shaders take for a hidden layer. */
+export function paddedWidth({ spec }: Field): (typeof PADDED_WIDTHS)[number] {
+  return PADDED_WIDTHS.find((width) => width >= spec.width) ?? 128;
 }
 
 function planTable(
   field: Field,
-  { owner, encoding }: LearnedEncoding,
+  { owner, encoding }: EncodingLeaf,
   firstScale: number,
   limits: TextureLimits,
 ): TableTexture {
   const names = encoding.slots.map((slot) => `${owner}.${slot.name}`);
-  const bits = commonBits(names.map((name) => tensorOf(field, name)));
   const nFeatures = encoding.slots[0]?.shape.at(-1) ?? 1;
   const isPlanes = encoding instanceof TriPlane;
+  const tensorsOfAll = names.map((name) => tensorOf(field, name));
+  const bits = tensorsOfAll.every((tensor) => hasEasyScales(tensor, isPlanes))
+    ? commonBits(tensorsOfAll)
+    : 32;
   const { entry, format } = planEntry(bits, nFeatures, isPlanes);
   const { tensors, nTexels } = placeTensors(field, names, entry, firstScale);
   const texture = isPlanes
@@ -175,6 +197,17 @@ function commonBits(tensors: readonly Tensor[]): TableBits {
   return kinds.size === 1 ? only : 32;
 }
 
+/**
+ * Whether shaders find the scale of an entry by a shift: one scale for all, for each plane, or for a power of two
+ * of whole entries. Our own files are of these; tables with other blocks become floats.
+ */
+function hasEasyScales({ shape, stored }: Tensor, isPlanes: boolean): boolean {
+  if (stored.kind !== "codes" || stored.block >= product(shape)) return true;
+  const [nFeatures, inPlane] = [shape.at(-1) ?? 1, product(shape.slice(1))];
+  if (isPlanes && inPlane % stored.block) return false;
+  return (isPlanes && stored.block === inPlane) || isPowerOfTwo(stored.block / nFeatures);
+}
+
 function planEntry(
   bits: TableBits,
   nFeatures: number,
@@ -195,21 +228,37 @@ function scaleCount(field: Field, { tensor, firstScale }: TablePlacement): numbe
   return firstScale >= 0 && stored.kind === "codes" ? stored.scales.length : 0;
 }
 
-function planConstants(field: Field, nScales: number, limits: TextureLimits): ConstantsPlan {
-  let next = 0;
-  const layers = layerShapes(field.spec).map(({ nInputs, nOutputs }) => {
-    const [blocksIn, blocksOut] = [Math.ceil(nInputs / 4), Math.ceil(nOutputs / 4)];
-    const placed = { nInputs, nOutputs, firstWeight: next, firstBias: next + 4 * blocksIn * blocksOut };
-    next = placed.firstBias + blocksOut;
-    return placed;
+function planConstants(
+  field: Field,
+  leaves: readonly EncodingLeaf[],
+  tables: readonly TableTexture[],
+  nScales: number,
+  limits: TextureLimits,
+): ConstantsPlan {
+  const { layers, end: scalesVec4 } = placeLayers(field);
+  let next = scalesVec4 + Math.ceil(nScales / 4);
+  const records = leaves.map((leaf) => {
+    const first = next;
+    next += encodingShader(leaf.encoding).record(leaf.encoding, placeOf(leaf, tables, scalesVec4)).length;
+    return first;
   });
-  const nVec4 = next + Math.ceil(nScales / 4);
-  const fits = 16 * nVec4 <= limits.maxUniformBytes;
-  return {
-    nVec4,
-    layers,
-    scalesVec4: next,
-    nScales,
-    ...(!fits && { texture: planList("rgba32float", nVec4, limits, "perceptron") }),
-  };
+  const fits = 16 * next <= limits.maxUniformBytes;
+  const size = [CONSTANTS_COLUMNS, Math.ceil(next / CONSTANTS_COLUMNS), 1] as const;
+  const texture = fits ? {} : { texture: planTexture("rgba32float", size, limits, "perceptron") };
+  return { nVec4: next, layers, scalesVec4, nScales, records, ...texture };
+}
+
+/** Matrices one behind another, each before its biases. */
+function placeLayers(field: Field): { layers: LayerPlacement[]; end: number } {
+  const shapes = layerShapes(field.spec);
+  const hidden = paddedWidth(field) / 4;
+  let end = HEADER;
+  const layers = shapes.map(({ nInputs, nOutputs }, i) => {
+    const blocksIn = i ? hidden : Math.ceil(nInputs / 4);
+    const blocksOut = i < shapes.length - 1 ? hidden : Math.ceil(nOutputs / 4);
+    const [firstWeight, firstBias] = [end, end + 4 * blocksIn * blocksOut];
+    end = firstBias + blocksOut;
+    return { nInputs, nOutputs, blocksIn, blocksOut, firstWeight, firstBias };
+  });
+  return { layers, end };
 }

@@ -1,8 +1,12 @@
 /** Fills the textures that `planFieldTextures` planned. */
 import { type Field, tensorOf } from "../field/field.js";
+import { extentOf } from "../field/spec.js";
 import { bitsPerValue, codeAt, scaleAt, storedBytes, type Tensor, tensorValues } from "../field/tensor.js";
 import { product } from "../numbers.js";
-import type { FieldTextures, TableTexture } from "./field-textures.js";
+import type { Vec4 } from "./encodings/encoding-shader.js";
+import { encodingShader } from "./encodings/registry.js";
+import { type ConstantsPlan, type FieldTextures, placeOf, type TableTexture } from "./field-textures.js";
+import { encodingLeaves } from "./leaves.js";
 import type { TexturePlan } from "./texture.js";
 
 const WORDS = { r32uint: 1, rg32uint: 2, rgba32uint: 4 } as const;
@@ -94,19 +98,48 @@ function bitsReader(tensor: Tensor, bits: number): (index: number) => number {
   return (i) => values[i] ?? 0;
 }
 
-function packConstants(field: Field, { constants, tables }: FieldTextures): Float32Array {
+function packConstants(field: Field, plan: FieldTextures): Float32Array {
+  const { constants } = plan;
   const numbers = new Float32Array((constants.texture?.nBytes ?? 16 * constants.nVec4) / 4);
-  constants.layers.forEach(({ nInputs, nOutputs, firstWeight, firstBias }, i) => {
+  numbers.set(header(field, constants).flat());
+  packPerceptron(numbers, field, constants);
+  packScales(numbers, field, plan);
+  encodingLeaves(field.spec).forEach((leaf, i) => {
+    const place = placeOf(leaf, plan.tables, constants.scalesVec4);
+    const record = encodingShader(leaf.encoding).record(leaf.encoding, place);
+    numbers.set(record.flat(), 4 * (constants.records[i] ?? 0));
+  });
+  return numbers;
+}
+
+/** What all fields have; `shaders/wgsl/field.wgsl` reads it. */
+function header({ spec, frame }: Field, { layers }: ConstantsPlan): Vec4[] {
+  const [first, second, last] = [layers[0], layers[1], layers.at(-1)];
+  if (!first || !second || !last) throw new Error("a perceptron has at least two matrices");
+  const [x, y, z] = extentOf(frame);
+  return [
+    [...frame.min, frame.scale],
+    [x, y, z, spec.nHiddenLayers],
+    [first.firstWeight, 4 * first.blocksIn, first.firstBias, second.firstWeight],
+    [last.firstWeight, last.firstBias, 0, 0],
+  ];
+}
+
+function packPerceptron(numbers: Float32Array, field: Field, { layers }: ConstantsPlan): void {
+  layers.forEach(({ nInputs, nOutputs, blocksIn, firstWeight, firstBias }, i) => {
     const weight = tensorValues(tensorOf(field, `mlp.${i}.weight`));
     numbers.set(tensorValues(tensorOf(field, `mlp.${i}.bias`)), 4 * firstBias);
     for (let row = 0; row < nOutputs; row++) {
       for (let column = 0; column < nInputs; column++) {
-        const block = Math.floor(row / 4) * Math.ceil(nInputs / 4) + Math.floor(column / 4);
+        const block = Math.floor(row / 4) * blocksIn + Math.floor(column / 4);
         const vec4 = firstWeight + 4 * block + (column % 4);
         numbers[4 * vec4 + (row % 4)] = weight[row * nInputs + column] ?? 0;
       }
     }
   });
+}
+
+function packScales(numbers: Float32Array, field: Field, { constants, tables }: FieldTextures): void {
   for (const { tensor, firstScale } of tables.flatMap((table) => table.tensors)) {
     const { stored } = tensorOf(field, tensor);
     if (stored.kind !== "codes" || firstScale < 0) continue;
@@ -114,5 +147,4 @@ function packConstants(field: Field, { constants, tables }: FieldTextures): Floa
     for (let block = 0; block < stored.scales.length; block++)
       numbers[first + block] = scaleAt(stored, block);
   }
-  return numbers;
 }

@@ -44,7 +44,7 @@ export class SphericalHarmonics implements Encoding {
 }
 
 /** What makes Y_lm orthonormal, for m ≥ 0. */
-function normalisation(l: number, m: number): number {
+export function normalisation(l: number, m: number): number {
   const ratio = factorial(l - m) / factorial(l + m);
   return Math.sqrt(((2 * l + 1) / (4 * Math.PI)) * ratio * (m ? 2 : 1));
 }
@@ -53,11 +53,15 @@ function factorial(n: number): number {
   return n < 2 ? 1 : n * factorial(n - 1);
 }
 
+/** P_m^m / sin^m θ without Condon and Shortley's sign: the product of odd numbers below 2m. */
+export function legendreStart(m: number): number {
+  return m ? (2 * m - 1) * legendreStart(m - 1) : 1;
+}
+
 /** P_l^m(z) / sin^m θ without Condon and Shortley's sign, for l from m to degree − 1. */
 function legendre(degree: number, m: number, z: number): number[] {
   let before = 0;
-  let last = 1;
-  for (let odd = 1; odd < 2 * m; odd += 2) last *= odd;
+  let last = legendreStart(m);
   const found = [last];
   for (let l = m + 1; l < degree; l++) {
     const next = ((2 * l - 1) * z * last - (l + m - 1) * before) / (l - m);

@@ -1,0 +1,11 @@
+// Generated from shaders/wgsl/identity.wgsl by `npm run shaders` in web/: don't edit.
+// needs: perceptron
+
+void irradia_identity(uint record, vec3 x) {
+    vec4 _e2 = irradia_constant(record);
+    uint column = uint(_e2.x);
+    irradia_push(column, x.x);
+    irradia_push((column + 1u), x.y);
+    irradia_push((column + 2u), x.z);
+    return;
+}

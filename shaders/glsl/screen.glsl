@@ -1,0 +1,37 @@
+// Generated from shaders/wgsl/screen.wgsl by `npm run shaders` in web/: don't edit.
+// given, in WGSL: var irradia_screen_surface: texture_2d<f32>
+// given, in WGSL: var<uniform> irradia_screen_view: array<vec4f>
+// given, in WGSL: fn irradia_light(position: vec3f, normal: vec3f) -> vec3f
+
+vec4 irradia_screen_seen(uvec2 pixel) {
+    vec4 _e3 = texelFetch(irradia_screen_surface, ivec2(pixel), 0);
+    return _e3;
+}
+
+vec3 irradia_screen_place(uvec2 pixel, float distance_) {
+    vec4 _e4 = irradia_screen_view[0];
+    vec4 _e9 = irradia_screen_view[0];
+    vec2 slope = (_e4.xy + (vec2(pixel) * _e9.zw));
+    float _e16 = irradia_screen_view[1].x;
+    vec2 across = (slope * mix(distance_, 1.0, _e16));
+    vec4 _e22 = irradia_screen_view[2];
+    vec4 _e28 = irradia_screen_view[3];
+    vec4 _e35 = irradia_screen_view[4];
+    vec4 _e41 = irradia_screen_view[5];
+    return ((((_e22.xyz * across.x) + (_e28.xyz * across.y)) - (_e35.xyz * distance_)) + _e41.xyz);
+}
+
+uvec2 irradia_screen_sample(uvec2 cell) {
+    vec4 _e5 = irradia_screen_view[1];
+    return min((2u * cell), (uvec2(_e5.zw) - uvec2(1u, 1u)));
+}
+
+vec3 irradia_screen_irradiance(uvec2 pixel) {
+    vec4 _e1 = irradia_screen_seen(pixel);
+    if ((_e1.w <= 0.0)) {
+        return vec3(0.0);
+    }
+    vec3 _e8 = irradia_screen_place(pixel, _e1.w);
+    vec3 _e11 = irradia_light(_e8, normalize(_e1.xyz));
+    return _e11;
+}

@@ -1,0 +1,20 @@
+// Generated from shaders/wgsl/directional-rnm-light.wgsl by `npm run shaders` in web/: don't edit.
+// needs: directional-rnm
+// given, in WGSL: fn irradia_rnm_a_sample(uv: vec2f, layer: f32) -> vec4f
+// given, in WGSL: fn irradia_rnm_b_sample(uv: vec2f, layer: f32) -> vec4f
+// given, in WGSL: fn irradia_rnm_c_sample(uv: vec2f, layer: f32) -> vec4f
+// given, in WGSL: var<uniform> irradia_map_scales: array<vec4f>
+
+float3 irradia_light(float3 normal, float3 surface_normal, float4 tangent, float2 lightmap_uv, float page)
+{
+    const float3 _e5 = irradia_rnm_weights(normal, surface_normal, tangent);
+    float4 _e8 = irradia_map_scales[0];
+    float3 weights = (_e5 * _e8.xyz);
+    const float4 _e11 = irradia_rnm_a_sample(lightmap_uv, page);
+    float3 a = _e11.xyz;
+    const float4 _e13 = irradia_rnm_b_sample(lightmap_uv, page);
+    float3 b = _e13.xyz;
+    const float4 _e15 = irradia_rnm_c_sample(lightmap_uv, page);
+    float3 c = _e15.xyz;
+    return max((((weights.x * a) + (weights.y * b)) + (weights.z * c)), (0.0).xxx);
+}

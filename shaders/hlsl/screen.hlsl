@@ -1,0 +1,41 @@
+// Generated from shaders/wgsl/screen.wgsl by `npm run shaders` in web/: don't edit.
+// given, in WGSL: var irradia_screen_surface: texture_2d<f32>
+// given, in WGSL: var<uniform> irradia_screen_view: array<vec4f>
+// given, in WGSL: fn irradia_light(position: vec3f, normal: vec3f) -> vec3f
+
+float4 irradia_screen_seen(uint2 pixel)
+{
+    float4 _e3 = irradia_screen_surface.Load(int3(pixel, int(0)));
+    return _e3;
+}
+
+float3 irradia_screen_place(uint2 pixel, float distance_)
+{
+    float4 _e4 = irradia_screen_view[0];
+    float4 _e9 = irradia_screen_view[0];
+    float2 slope = (_e4.xy + (float2(pixel) * _e9.zw));
+    float _e16 = irradia_screen_view[1].x;
+    float2 across = (slope * lerp(distance_, 1.0, _e16));
+    float4 _e22 = irradia_screen_view[2];
+    float4 _e28 = irradia_screen_view[3];
+    float4 _e35 = irradia_screen_view[4];
+    float4 _e41 = irradia_screen_view[5];
+    return ((((_e22.xyz * across.x) + (_e28.xyz * across.y)) - (_e35.xyz * distance_)) + _e41.xyz);
+}
+
+uint2 irradia_screen_sample(uint2 cell)
+{
+    float4 _e5 = irradia_screen_view[1];
+    return min((2u * cell), (naga_f2u32(_e5.zw) - uint2(1u, 1u)));
+}
+
+float3 irradia_screen_irradiance(uint2 pixel)
+{
+    const float4 _e1 = irradia_screen_seen(pixel);
+    if ((_e1.w <= 0.0)) {
+        return (0.0).xxx;
+    }
+    const float3 _e8 = irradia_screen_place(pixel, _e1.w);
+    const float3 _e11 = irradia_light(_e8, normalize(_e1.xyz));
+    return _e11;
+}

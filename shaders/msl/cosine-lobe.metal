@@ -1,0 +1,19 @@
+// Generated from shaders/wgsl/cosine-lobe.wgsl by `npm run shaders` in web/: don't edit.
+
+metal::float4 irradia_lobe_linear(
+    metal::float3 n
+) {
+    return metal::float4(0.88622695, 1.0233268 * n.yzx);
+}
+
+metal::float4 irradia_lobe_quadratic(
+    metal::float3 n
+) {
+    return metal::float4((0.8580855 * n.x) * n.y, (0.8580855 * n.y) * n.z, 0.24770796 * (((3.0 * n.z) * n.z) - 1.0), (0.8580855 * n.x) * n.z);
+}
+
+float irradia_lobe_squares(
+    metal::float3 n
+) {
+    return 0.42904276 * ((n.x * n.x) - (n.y * n.y));
+}

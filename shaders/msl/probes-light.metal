@@ -1,0 +1,77 @@
+// Generated from shaders/wgsl/probes-light.wgsl by `npm run shaders` in web/: don't edit.
+// needs: probes, probe-cell
+// given, in WGSL: var<uniform> irradia_probe_layout: array<vec4f>
+
+float irradia_probe_share(
+    metal::float3 share,
+    uint corner
+) {
+    metal::bool3 high = metal::bool3((corner & 1u) != 0u, (corner & 2u) != 0u, (corner & 4u) != 0u);
+    metal::float3 along = metal::select(metal::float3(1.0) - share, share, high);
+    return (along.x * along.y) * along.z;
+}
+
+metal::float3 irradia_light(
+    metal::float3 position,
+    metal::float3 normal,
+    metal::float3 surface_normal
+) {
+    metal::float3 light = metal::float3(0.0);
+    float total = 0.0;
+    bool local = {};
+    metal::float4 _e3 = irradia_probe_cell(position);
+    float on_surface = irradia_probe_layout[1].w;
+    for (uint corner = 0u; corner < 8u; corner += 1u) {
+        uint _e19 = corner;
+        float _e20 = irradia_probe_share(_e3.xyz, _e19);
+        uint _e22 = corner;
+        uint _e23 = irradia_probe_corner(_e3.w, _e22);
+        if (_e20 > 0.0) {
+            local = _e23 != 4294967295u;
+        } else {
+            local = false;
+        }
+        bool _e31 = local;
+        if (_e31) {
+            metal::float4 _e32 = irradia_probe_place(_e23);
+            if (_e32.w > 0.0) {
+                float _e36 = irradia_probe_weight(_e23, _e32, position, surface_normal, on_surface);
+                float weight = _e20 * _e36;
+                metal::float3 _e38 = light;
+                metal::float3 _e39 = irradia_probe_irradiance(_e23, normal);
+                light = _e38 + (weight * _e39);
+                float _e42 = total;
+                total = _e42 + weight;
+            }
+        }
+    }
+    metal::float3 _e47 = light;
+    float _e48 = total;
+    return metal::max(_e47 / metal::float3(metal::max(_e48, 0.000000000000000000000000000001)), metal::float3(0.0));
+}
+
+metal::float3 irradia_view_validity(
+    metal::float3 position,
+    metal::float3 normal,
+    metal::float3 surface_normal
+) {
+    float validity = 0.0;
+    float total = 0.0;
+    metal::float4 _e3 = irradia_probe_cell(position);
+    for (uint corner = 0u; corner < 8u; corner += 1u) {
+        uint _e14 = corner;
+        float _e15 = irradia_probe_share(_e3.xyz, _e14);
+        uint _e17 = corner;
+        uint _e18 = irradia_probe_corner(_e3.w, _e17);
+        if (_e18 != 4294967295u) {
+            float _e21 = validity;
+            float _e22 = irradia_probe_validity(_e18);
+            validity = _e21 + (_e15 * _e22);
+            float _e25 = total;
+            total = _e25 + _e15;
+        }
+    }
+    float _e30 = validity;
+    float _e31 = total;
+    return metal::float3(_e30 / metal::max(_e31, 0.000000000000000000000000000001));
+}
