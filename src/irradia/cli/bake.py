@@ -20,6 +20,12 @@ if TYPE_CHECKING:
 
 _MANY_FILES = 12
 
+# Parameters that the job calls as click does.
+JOB_NAMES = (
+    *("scene", "out", "view_first", "shard", "update", "ies", "resume", "checkpoint_s", "compatible"),
+    *("device", "threads"),
+)
+
 SECTIONS = {
     "Results": ("--out", "--format", "--compatible", "--no-report", "--reference-spp", "--json"),
     "When it is done": ("--samples", "--time", "--noise", "--adaptive", "--view-first"),
@@ -101,15 +107,7 @@ SECTIONS = {
     help="Trace only the I-th of N parts of the samples; irradia merge joins them.",
 )
 @click.option("--resume", is_flag=True, help="Go on with the bake that was stopped in this folder.")
-@click.option(
-    "--checkpoint",
-    "checkpoint_s",
-    type=options.POSITIVE,
-    default=60.0,
-    show_default=True,
-    metavar="S",
-    help="How often to save what --resume needs.",
-)
+@options.checkpoint_option()
 @click.option("--compatible", is_flag=True, help="Write instances out, for loaders that can't read them.")
 @options.seed_option
 @options.device_option
@@ -134,36 +132,25 @@ def command(as_json: bool, **choices: Any) -> int:
 
 def make_job(
     *,
-    scene: str,
-    out: Path,
     samples: int | None,
     ao_distance: float | None,
-    view_first: str | None,
-    shard: tuple[int, int] | None,
     only: tuple[str, ...],
-    update: bool,
     probes: str | None,
     probe_samples: int,
     formats: str,
     material_override: tuple[str, ...],
-    ies: tuple[str, ...],
-    resume: bool,
-    checkpoint_s: float,
     resolution: int | None,
     texels_per_metre: float | None,
     fast_rays: bool,
     no_report: bool,
     reference_spp: int,
-    compatible: bool,
     seed: int,
-    device: str,
-    threads: int | None,
     variant: str | None,
     pose_time: float | None,
     mode: str,
     **choices: Any,
 ) -> BakeJob:
-    """The command line as a job; ``choices`` hold those of light and of :func:`_bake_options`."""
+    """The command line as a job; ``choices`` hold ``JOB_NAMES`` and those of light and of a map's values."""
     from irradia.bake.probes.options import ProbeOptions
     from irradia.cli.bake_job import BakeJob
     from irradia.cli.bake_views import ViewOptions
@@ -171,30 +158,19 @@ def make_job(
     from irradia.scene.lightmap_uv.options import LayoutOptions
     from irradia.scene.load import LoadOptions
 
+    common: dict[str, Any] = {"seed": seed, "fast_rays": fast_rays}
     return BakeJob(
-        scene=scene,
-        out=out,
+        **{name: choices.pop(name) for name in JOB_NAMES},
         load=LoadOptions(pose_time=pose_time, variant=variant),
         light=options.light_options(**{name: choices.pop(name) for name in options.LIGHT_NAMES}),
         layout=LayoutOptions(texels_per_metre=texels_per_metre, resolution=resolution),
-        bake=_bake_options(samples, mode, seed=seed, fast_rays=fast_rays, **choices),
-        views=None if no_report else ViewOptions(reference_spp, seed=seed, fast_rays=fast_rays),
-        compatible=compatible,
-        shard=shard,
+        bake=_bake_options(samples, mode, **common, **choices),
+        views=None if no_report else ViewOptions(reference_spp, **common),
         only=tuple(name for part in only for name in part.split(",") if name),
-        update=update,
         overrides=material_override,
-        ies=ies,
-        probes=None
-        if probes is None
-        else ProbeOptions.parse(probes, samples=probe_samples, seed=seed, fast_rays=fast_rays),
+        probes=ProbeOptions.parse(probes, samples=probe_samples, **common) if probes is not None else None,
         formats=parse_formats(formats),
         occlusion=_occlusion(mode, samples, ao_distance, seed),
-        resume=resume,
-        checkpoint_s=checkpoint_s,
-        view_first=view_first,
-        device=device,  # type: ignore[arg-type]
-        threads=threads,
     )
 
 

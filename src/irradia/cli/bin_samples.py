@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -13,10 +13,12 @@ from irradia.core.errors import InputError
 if TYPE_CHECKING:
     from irradia.formats.samples_bin import BinOptions
 
+F = TypeVar("F", bound=Callable[..., Any])
+
 NAMES = ("--coefficients", "--quantity")
 
 
-def bin_sample_options(command: Callable) -> Callable:
+def bin_sample_options(command: F) -> F:
     """Adds ``--coefficients`` and ``--quantity``, both None where they aren't given."""
     for option in (
         click.option(

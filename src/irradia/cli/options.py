@@ -64,6 +64,17 @@ class Whole(click.ParamType):
         return number
 
 
+class Spelled(click.Choice):
+    """Choices that are said as files spell them, with underscores, and taken with hyphens too.
+
+    click would say them as it normalises the names of options.
+    """
+
+    def normalize_choice(self, choice: object, ctx: click.Context | None) -> str:
+        """The choice with underscores."""
+        return str(choice).replace("-", "_")
+
+
 class Reach(Finite):
     """A positive distance; infinity is one."""
 
@@ -129,9 +140,23 @@ reference_spp_option = click.option(
 )
 
 
+def checkpoint_option(*names: str) -> Callable[[F], F]:
+    """``--checkpoint``, under further names if wished."""
+    return click.option(
+        "--checkpoint",
+        *names,
+        "checkpoint_s",
+        type=POSITIVE,
+        default=60.0,
+        show_default=True,
+        metavar="S",
+        help="How often to save what --resume needs.",
+    )
+
+
 def budget_options(function: F) -> F:
     """``--samples``, ``--time``, ``--noise``: when a bake is done, and where its rays go."""
-    return _apply(
+    return together(
         function,
         click.option(
             "--samples",
@@ -158,7 +183,7 @@ def budget_options(function: F) -> F:
 
 def map_options(function: F) -> F:
     """Which maps, in which formats, and what goes into them beside the scene's file."""
-    return _apply(
+    return together(
         function,
         click.option(
             "--directional",
@@ -198,7 +223,7 @@ def map_options(function: F) -> F:
 
 def override_options(function: F) -> F:
     """What is known of the scene better than its file says: materials, and lamps as measured."""
-    return _apply(
+    return together(
         function,
         click.option(
             "--material-override",
@@ -223,7 +248,7 @@ def sample_limit(samples: int | None, time_s: float | None, noise: float | None)
 
 def lighting_options(function: F) -> F:
     """``--env`` and its companions: light from outside the file."""
-    return _apply(
+    return together(
         function,
         click.option(
             "--env",
@@ -242,7 +267,7 @@ def lighting_options(function: F) -> F:
 
 def scene_options(function: F) -> F:
     """``--variant`` and ``--pose-time``: which state of the file is meant."""
-    return _apply(
+    return together(
         function,
         click.option("--variant", metavar="NAME", help="KHR_materials_variants: which one."),
         click.option(
@@ -293,7 +318,8 @@ def parse_color(text: str) -> tuple[float, float, float]:
     return (values[0], values[1], values[2])
 
 
-def _apply(function: F, *options: Callable[[F], F]) -> F:
+def together(function: F, *options: Callable[[F], F]) -> F:
+    """Gives a command several options, in the order of its help."""
     for option in reversed(options):
         function = option(function)
     return function

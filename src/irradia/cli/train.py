@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from irradia.cli import options
-from irradia.cli.bin_samples import bin_options, bin_sample_options
+from irradia.cli import options, train_options
+from irradia.cli.bin_samples import bin_options
 from irradia.cli.output import code_of, finish
 from irradia.cli.sections import SectionedCommand
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from irradia.field.training.options import TrainOptions
 
 SECTIONS = {
-    "Results": ("--out", "--finish", "--precision", "--json"),
+    "Results": ("--out", "--finish", "--precision", "--print-spec", "--json"),
     "Field": (
         *("--preset", "--encoding", "--sh-mode", "--hidden-dim", "--hidden-layers", "--activation", "--head"),
         *("--direction", "--n-levels", "--n-features", "--log2-hashmap-size", "--base-resolution"),
@@ -51,8 +51,6 @@ DATA_NAMES = {
     "hold_out_blocks": "hold_out_blocks",
 }
 _MEBIBYTE = 1 << 20
-_FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
-_COUNT = options.Whole(1, 1 << 30)
 
 
 @click.command(
@@ -64,199 +62,12 @@ _COUNT = options.Whole(1, 1 << 30)
 )
 @click.argument("data", required=False, type=click.Path(dir_okay=False, path_type=Path))
 @click.option("-i", "--input", "data_flag", type=click.Path(dir_okay=False, path_type=Path), help="DATA.")
-@click.option(
-    "-o",
-    "--out",
-    type=click.Path(dir_okay=False, path_type=Path),
-    required=True,
-    help="The field: .safetensors, .safetensors.zst or .bin.",
-)
-@click.option(
-    "--finish",
-    "finishing",
-    type=click.Choice(["int8", "int4"]),
-    help="Quantise the tables, and train the decoder on for them.",
-)
-@click.option(
-    "--precision",
-    type=click.Choice(["fp16", "fp32"]),
-    default="fp16",
-    show_default=True,
-    help="Of what isn't quantised.",
-)
-@click.option(
-    "--preset",
-    metavar="NAME",
-    help="A field of about a size with rates and finishing to match, such as hash-200kB.",
-)
-@click.option(
-    "--encoding",
-    type=click.Choice(["hash", "triplane", "frequency"]),
-    default="hash",
-    show_default=True,
-    help="Of positions.",
-)
-@click.option("--sh-mode", is_flag=True, help="The field gives SH coefficients; samples of SH imply it.")
-@click.option("--hidden-dim", type=options.Whole(1, 128), default=64, show_default=True, metavar="N")
-@click.option("--hidden-layers", type=options.Whole(1, 6), default=2, show_default=True, metavar="N")
-@click.option(
-    "--activation",
-    type=click.Choice(["relu", "leaky_relu", "silu", "gelu", "sine"]),
-    default="relu",
-    show_default=True,
-    metavar="NAME",
-    help="Of hidden layers: relu, leaky_relu, silu, gelu or sine.",
-)
-@click.option(
-    "--head",
-    type=click.Choice(["exp", "softplus", "linear"]),
-    metavar="NAME",
-    help="Of outputs: exp, softplus or linear.  [default: exp; linear for SH]",
-)
-@click.option(
-    "--direction",
-    default="identity",
-    show_default=True,
-    metavar="NAME[:SIZE]",
-    help="Encoding of normals: identity, sh, one_blob or frequency, such as sh:4.",
-)
-@click.option("--n-levels", type=options.Whole(1, 32), default=16, show_default=True, metavar="N")
-@click.option(
-    "--n-features",
-    type=options.Whole(1, 16),
-    default=2,
-    show_default=True,
-    metavar="N",
-    help="Of each entry of a hash level.",
-)
-@click.option(
-    "--log2-hashmap-size",
-    type=options.Whole(3, 28),
-    default=19,
-    show_default=True,
-    metavar="N",
-    help="Entries of a hash level at most, as a power of two.",
-)
-@click.option("--base-resolution", type=_COUNT, default=16, show_default=True, metavar="N")
-@click.option("--max-resolution", type=_COUNT, default=2048, show_default=True, metavar="N")
-@click.option(
-    "--plane-res",
-    type=options.Whole(2, 8192),
-    default=128,
-    show_default=True,
-    metavar="N",
-    help="Of each side of a triplane.",
-)
-@click.option("--features-per-plane", type=options.Whole(1, 128), default=16, show_default=True, metavar="N")
-@click.option("--n-frequencies", type=options.Whole(1, 24), default=10, show_default=True, metavar="N")
-@click.option("--include-identity", is_flag=True, help="frequency: the coordinates are features too.")
-@click.option(
-    "--spec", "spec_file", type=_FILE, metavar="FILE", help="All of the field, as JSON, instead of the above."
-)
-@click.option("--steps", type=_COUNT, metavar="N", help="[default: 5000, unless --time is given]")
-@click.option(
-    "--time", "time_s", type=options.POSITIVE, metavar="S", help="Train this long, with rates to match."
-)
-@click.option("--batch-size", type=options.Whole(1, 1 << 24), default=65_536, show_default=True, metavar="N")
-@click.option(
-    "--loss",
-    type=click.Choice(["relative_l2", "relative_l2_luminance", "l2", "log"]),
-    default="relative_l2",
-    show_default=True,
-    metavar="NAME",
-    help="relative_l2, relative_l2_luminance, l2 or log.",
-)
-@click.option(
-    "--lr-encoding", type=options.NOT_NEGATIVE, default=0.01, show_default=True, metavar="X", help="At first."
-)
-@click.option(
-    "--lr-network", type=options.NOT_NEGATIVE, default=0.001, show_default=True, metavar="X", help="At first."
-)
-@click.option(
-    "--lr-final",
-    type=options.POSITIVE,
-    default=0.1,
-    show_default=True,
-    metavar="X",
-    help="Share of both that is left at the end.",
-)
-@click.option(
-    "--average",
-    type=options.NOT_NEGATIVE,
-    default=0.99,
-    show_default=True,
-    metavar="X",
-    help="Decay of the running mean of weights that the field is made of; 0 takes the last ones.",
-)
-@click.option(
-    "--early-stop",
-    type=_COUNT,
-    metavar="N",
-    help="End after N validations without a better relMSE, and keep the best.",
-)
-@click.option("--jitter-copies", type=options.Whole(0, 64), default=0, show_default=True, metavar="N")
-@click.option("--jitter-radius", type=options.POSITIVE, default=0.05, show_default=True, metavar="M")
-@click.option("--jitter-scene", metavar="SCENE", help="Ask its surfaces whether copies see their samples.")
-@click.option(
-    "--smooth-k",
-    type=options.Whole(0, 256),
-    default=0,
-    show_default=True,
-    metavar="N",
-    help="Replace values by means over the N nearest samples.",
-)
-@click.option(
-    "--smooth-normal-thresh",
-    type=options.Finite(-1.0),
-    default=0.5,
-    show_default=True,
-    metavar="X",
-    help="Of those whose normals have at least this cosine.",
-)
-@click.option(
-    "--memory",
-    "memory_mib",
-    type=_COUNT,
-    default=1024,
-    show_default=True,
-    metavar="MIB",
-    help="For samples; larger files are read in shuffled windows.",
-)
-@bin_sample_options
-@click.option("--follow", is_flag=True, help="Wait for DATA to appear.")
-@click.option(
-    "--validation", type=_FILE, metavar="FILE", help="Samples to judge by.  [default: DATA's own, else 2 %]"
-)
-@click.option(
-    "--validate-every", type=_COUNT, metavar="N", help="Steps between validations.  [default: a twentieth]"
-)
-@click.option(
-    "--hold-out-blocks",
-    type=options.NOT_NEGATIVE,
-    default=0.0,
-    show_default=True,
-    metavar="X",
-    help="Share of space kept from training, to see how well the field fills gaps.",
-)
-@click.option("--resume", is_flag=True, help="Go on with the training that was stopped here.")
-@click.option(
-    "--checkpoint",
-    "--checkpoint-s",
-    "checkpoint_s",
-    type=options.POSITIVE,
-    default=60.0,
-    show_default=True,
-    metavar="S",
-    help="How often to save what --resume needs.",
-)
-@click.option(
-    "--backend",
-    type=click.Choice(["auto", "numpy", "numba", "drjit"]),
-    default="auto",
-    show_default=True,
-    metavar="NAME",
-    help="auto, numpy, numba or drjit.",
-)
+@train_options.results_options
+@train_options.field_options
+@train_options.learning_options
+@train_options.sample_options
+@train_options.validation_options
+@train_options.machine_options
 @options.seed_option
 @options.threads_option
 @options.json_option
@@ -269,6 +80,8 @@ def command(ctx: click.Context, as_json: bool, **_: Any) -> int:
     """
     from irradia.core.progress import stderr_progress
 
+    if ctx.params["print_spec"]:
+        return _print_spec(ctx, as_json)
     job = job_of(ctx)
     from irradia.cli.train_run import run_training
 
@@ -279,8 +92,30 @@ def command(ctx: click.Context, as_json: bool, **_: Any) -> int:
 def job_of(ctx: click.Context) -> TrainJob:
     """The job that a command line, as parsed, asks for; see :func:`make_job`."""
     choices = {name: value for name, value in ctx.params.items() if name != "as_json"}
-    given = {name for name in choices if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE}
-    return make_job(given, **choices)
+    return make_job(_given(ctx), **choices)
+
+
+def _given(ctx: click.Context) -> set[str]:
+    """Names of the parameters that were not left to their defaults."""
+    return {name for name in ctx.params if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE}
+
+
+def _print_spec(ctx: click.Context, as_json: bool) -> int:
+    """Prints the field that would be trained; without samples one of irradiance, or of SH to L1."""
+    from irradia.cli.train_spec import SpecChoices
+    from irradia.field.registry import print_spec, spec_to_dict
+    from irradia.formats.samples import SampleInfo, open_samples
+
+    chosen = ctx.params
+    _one_word_on_the_field(_given(ctx))
+    names = (*SPEC_NAMES, "spec_file", "preset", "sh_mode")
+    data, box = chosen["data"] or chosen["data_flag"], ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+    if data is not None:
+        info = open_samples(data, bin_options(chosen["coefficients"], chosen["quantity"], data)).info
+    else:
+        info = SampleInfo("sh", box, n_coefficients=4) if chosen["sh_mode"] else SampleInfo("volume", box)
+    spec = SpecChoices(**{name: chosen[name] for name in names}).spec(info)
+    return finish(as_json, {"spec": spec_to_dict(spec)}, print_spec(spec).rstrip())
 
 
 def make_job(
@@ -288,7 +123,7 @@ def make_job(
     *,
     data: Path | None,
     data_flag: Path | None,
-    out: Path,
+    out: Path | None,
     finishing: str | None,
     precision: str,
     preset: str | None,
@@ -317,8 +152,11 @@ def make_job(
     from irradia.cli.train_job import TrainJob
     from irradia.cli.train_spec import SpecChoices
 
+    choices.pop("print_spec", None)
     if (data is None) == (data_flag is None):
         raise click.UsageError("Give the samples once: as DATA, or by -i.")
+    if out is None:
+        raise click.UsageError("Missing option '-o' / '--out'.")
     _one_word_on_the_field(given)
     if preset is not None:
         finishing = _as_preset(preset, given, choices, finishing)

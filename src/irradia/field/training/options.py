@@ -33,13 +33,14 @@ class DataOptions:
     memory_bytes: int = 1 << 30
 
     def __post_init__(self) -> None:
-        _expect(0 <= self.jitter_copies <= 64, "0 to 64 jitter copies", self.jitter_copies)
-        _expect(0.0 < self.jitter_radius_m < math.inf, "a jitter radius over 0", self.jitter_radius_m)
-        _expect(0 <= self.smooth_k <= 256, "0 to 256 neighbours", self.smooth_k)
-        threshold = self.smooth_normal_threshold
-        _expect(-1.0 <= threshold <= 1.0, "a cosine between normals of -1 to 1", threshold)
-        _expect(0.0 <= self.hold_out_blocks <= 0.5, "a share of blocks of 0 to 0.5", self.hold_out_blocks)
-        _expect(self.memory_bytes > 0, "memory for samples", self.memory_bytes)
+        copies, radius_m, threshold = self.jitter_copies, self.jitter_radius_m, self.smooth_normal_threshold
+        _expect(0 <= copies <= 64, "0 to 64 copies", copies, "--jitter-copies")
+        _expect(0.0 < radius_m < math.inf, "a radius over 0", radius_m, "--jitter-radius")
+        _expect(0 <= self.smooth_k <= 256, "0 to 256 neighbours", self.smooth_k, "--smooth-k")
+        _expect(-1.0 <= threshold <= 1.0, "a cosine of -1 to 1", threshold, "--smooth-normal-thresh")
+        share = self.hold_out_blocks
+        _expect(0.0 <= share <= 0.5, "a share of 0 to 0.5", share, "--hold-out-blocks")
+        _expect(self.memory_bytes > 0, "memory for samples", self.memory_bytes, "--memory")
 
 
 @dataclass(frozen=True)
@@ -79,16 +80,20 @@ class TrainOptions:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        _expect(self.steps is not None or self.time_s is not None, "a number of steps or a time", None)
-        _expect(self.steps is None or self.steps >= 1, "at least 1 step", self.steps)
-        _expect(self.time_s is None or 0.0 < self.time_s < math.inf, "a time over 0 s", self.time_s)
-        _expect(self.batch_size >= 1, "at least 1 sample a step", self.batch_size)
-        for name, rate in (("encoding", self.lr_encoding), ("network", self.lr_network)):
-            _expect(0.0 <= rate < math.inf, f"a learning rate of the {name} of at least 0", rate)
-        _expect(0.0 < self.lr_final <= 1.0, "a share over 0, up to 1, of learning rates left", self.lr_final)
-        _expect(0.0 <= self.average < 1.0, "a decay of the mean from 0 to below 1", self.average)
-        for name, count in (("validate_every", self.validate_every), ("early_stop", self.early_stop)):
-            _expect(count is None or count >= 1, f"{name} of at least 1", count)
+        steps, time_s = self.steps, self.time_s
+        _expect(steps is not None or time_s is not None, "a number of steps or a time", None, "--steps")
+        _expect(time_s is None or 0.0 < time_s < math.inf, "a time over 0 s", time_s, "--time")
+        for count, where in (
+            (steps, "--steps"),
+            (self.batch_size, "--batch-size"),
+            (self.validate_every, "--validate-every"),
+            (self.early_stop, "--early-stop"),
+        ):
+            _expect(count is None or count >= 1, "at least 1", count, where)
+        for rate, where in ((self.lr_encoding, "--lr-encoding"), (self.lr_network, "--lr-network")):
+            _expect(0.0 <= rate < math.inf, "a rate of at least 0", rate, where)
+        _expect(0.0 < self.lr_final <= 1.0, "a share over 0, up to 1", self.lr_final, "--lr-final")
+        _expect(0.0 <= self.average < 1.0, "a decay from 0 to below 1", self.average, "--average")
 
     def step_options(self) -> StepOptions:
         """What backends need of this."""
@@ -107,6 +112,6 @@ class TrainOptions:
 _NO_PART_OF_RESULT = ("checkpoint_s",)
 
 
-def _expect(holds: bool, wanted: str, found: object) -> None:
+def _expect(holds: bool, wanted: str, found: object, where: str) -> None:
     if not holds:
-        raise InputError(f"expected {wanted}, found {found}")
+        raise InputError(f"expected {wanted}, found {found}", where=where)
