@@ -1,1 +1,40 @@
-export {};
+/** Starts the page: its address and manifest say what to open. */
+import { App } from "./app.js";
+import { manifestOfPage } from "./files/page-manifest.js";
+import { problemOf } from "./files/problem.js";
+import { NO_STATUS } from "./state/status.js";
+import { Store } from "./state/store.js";
+import { readPageOptions, readState } from "./state/url.js";
+import { buildPage } from "./ui/page.js";
+import { repeatInUrl } from "./ui/repeat.js";
+
+const options = readPageOptions(location.search);
+const state = new Store(readState(location.search, location.hash));
+const status = new Store(NO_STATUS);
+const host = document.createElement("div");
+host.className = "view";
+const app = new App(host, state, status, options);
+buildPage(app);
+repeatInUrl(state, status);
+
+const ready = start().catch((error: unknown) => {
+  const problem = { ...problemOf(error, "the page"), title: "Can't start" };
+  status.set({ problems: [problem], phase: "error", message: problem.finding });
+});
+
+/** For scripts that drive the page. */
+Object.assign(globalThis, {
+  irradiaViewer: { ready, state, status, picture: () => app.picture(), settled: () => app.settled() },
+});
+
+async function start(): Promise<void> {
+  await app.start();
+  const manifest = await manifestOfPage();
+  const { scene, field, environment } = state.value;
+  const entry = manifest?.scenes[scene === "" ? manifest.start.scene : Number(scene)];
+  if (entry) await app.session.openManifest(entry);
+  else if (scene !== "") await app.session.openUrl(scene);
+  for (const url of [field, environment]) if (url !== "") await app.session.openUrl(url);
+  if (options.pose !== undefined) app.lookFromNumber(options.pose);
+  await app.settled();
+}

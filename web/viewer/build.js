@@ -1,0 +1,47 @@
+/**
+ * Bundles the viewer into dist/: index.html, viewer.js, viewer.css. All addresses in them are relative, so
+ * the folder can lie anywhere.
+ *
+ *   node build.js [--watch]
+ */
+import { cpSync, mkdirSync } from "node:fs";
+import { fileURLToPath } from "node:url";
+import { context } from "esbuild";
+
+const here = fileURLToPath(new URL(".", import.meta.url));
+/** Addons import "three", which is WebGLRenderer with all of its shaders; this page has no use for those. */
+const oneThree = {
+  name: "one three",
+  setup: (build) => {
+    build.onResolve({ filter: /^three$/ }, ({ kind, resolveDir }) =>
+      build.resolve("three/webgpu", { kind, resolveDir }),
+    );
+  },
+};
+const bundle = await context({
+  absWorkingDir: here,
+  entryPoints: { viewer: "src/main.ts" },
+  outdir: "dist",
+  bundle: true,
+  minify: true,
+  format: "esm",
+  target: "es2022",
+  plugins: [oneThree],
+  legalComments: "none",
+  logLevel: "warning",
+});
+const styles = await context({
+  absWorkingDir: here,
+  entryPoints: { viewer: "src/style/index.css" },
+  outdir: "dist",
+  bundle: true,
+  minify: true,
+  logLevel: "warning",
+});
+mkdirSync(`${here}dist`, { recursive: true });
+cpSync(`${here}index.html`, `${here}dist/index.html`);
+for (const one of [bundle, styles]) {
+  await one.rebuild();
+  if (process.argv.includes("--watch")) await one.watch();
+  else await one.dispose();
+}

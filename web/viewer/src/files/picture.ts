@@ -1,0 +1,139 @@
+/** Pictures from files: panoramas that light, and renders to compare with. */
+import { InputError } from "@irradia/runtime";
+import { EXRLoader } from "three/addons/loaders/EXRLoader.js";
+import { HDRLoader } from "three/addons/loaders/HDRLoader.js";
+import {
+  DataTexture,
+  DataUtils,
+  EquirectangularReflectionMapping,
+  FloatType,
+  HalfFloatType,
+  LinearFilter,
+  LinearSRGBColorSpace,
+  NoColorSpace,
+  RGBAFormat,
+  type Texture,
+} from "three/webgpu";
+import type { NamedFile } from "./kinds.js";
+
+export interface Picture {
+  readonly name: string;
+  readonly width: number;
+  readonly height: number;
+  /** Top row first. */
+  readonly texture: Texture;
+  /** Whether its numbers are light; else they are what a display shows. */
+  readonly isLinear: boolean;
+}
+
+const LARGEST_HALF = 65504;
+/** three.js divides by 255 where everyone else divides by 256. */
+const RGBE_FACTOR = 255 / 256;
+
+/** Reads .hdr or .exr: linear light. */
+export function readRadiance(file: NamedFile): Picture {
+  const isExr = file.bytes[0] === 0x76;
+  const buffer = file.bytes.slice().buffer;
+  try {
+    return isExr ? fromExr(file.name, buffer) : fromHdr(file.name, buffer);
+  } catch (error) {
+    const message = error instanceof Error ? error.message : String(error);
+    throw new InputError(
+      `expected a Radiance or OpenEXR picture, found: ${message}`,
+      file.name,
+      "Write it again.",
+    );
+  }
+}
+
+/**
+ * Reads .png or .jpg.
+ *
+ * @param ev the exposure at which one of our own pictures was written; then light is made of it again
+ */
+export async function readPicture(file: NamedFile, ev?: number): Promise<Picture> {
+  const blob = new Blob([file.bytes as Uint8Array<ArrayBuffer>]);
+  let bitmap: ImageBitmap;
+  try {
+    bitmap = await createImageBitmap(blob, { premultiplyAlpha: "none", colorSpaceConversion: "none" });
+  } catch {
+    throw new InputError("expected a PNG or JPEG picture, found damaged bytes", file.name, "Write it again.");
+  }
+  const { width, height } = bitmap;
+  const rgba = pixelsOf(bitmap);
+  const decode =
+    ev === undefined ? linearFromSrgb : (value: number) => unshoulder(linearFromSrgb(value)) / 2 ** ev;
+  const table = Float32Array.from({ length: 256 }, (_, code) => decode(code / 255));
+  const linear = Float32Array.from(rgba, (code, i) => (i % 4 === 3 ? code / 255 : (table[code] ?? 0)));
+  return {
+    name: file.name,
+    width,
+    height,
+    texture: floatTexture(linear, width, height),
+    isLinear: ev !== undefined,
+  };
+}
+
+/** Undoes the roll-off of `irradia.core.colour.picture_srgb8`. */
+export function unshoulder(shown: number): number {
+  return shown <= 0.5 ? shown : (1 - Math.log(2 * (1 - Math.min(shown, 0.9999)))) / 2;
+}
+
+export function linearFromSrgb(coded: number): number {
+  return coded <= 0.04045 ? coded / 12.92 : ((coded + 0.055) / 1.055) ** 2.4;
+}
+
+function pixelsOf(bitmap: ImageBitmap): Uint8ClampedArray {
+  const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+  const context = canvas.getContext("2d");
+  if (!context) throw new InputError("expected a 2D canvas, found none", "browser");
+  context.drawImage(bitmap, 0, 0);
+  return context.getImageData(0, 0, bitmap.width, bitmap.height).data;
+}
+
+function fromHdr(name: string, buffer: ArrayBuffer): Picture {
+  const loader = new HDRLoader();
+  loader.type = FloatType;
+  const { width, height, data } = loader.parse(buffer) as {
+    width: number;
+    height: number;
+    data: Float32Array;
+  };
+  const linear = data.map((value, i) => (i % 4 === 3 ? 1 : value * RGBE_FACTOR));
+  return { name, width, height, texture: floatTexture(linear, width, height), isLinear: true };
+}
+
+/** EXRLoader's rows begin at the bottom; and ours come with one channel or three, or four. */
+function fromExr(name: string, buffer: ArrayBuffer): Picture {
+  const loader = new EXRLoader();
+  loader.type = FloatType;
+  const parsed = loader.parse(buffer) as { width: number; height: number; data: Float32Array };
+  const { width, height, data } = parsed;
+  const linear = new Float32Array(4 * width * height);
+  for (let y = 0; y < height; y += 1) {
+    linear.set(data.subarray(4 * width * (height - 1 - y), 4 * width * (height - y)), 4 * width * y);
+  }
+  for (let i = 3; i < linear.length; i += 4) linear[i] = 1;
+  return { name, width, height, texture: floatTexture(linear, width, height), isLinear: true };
+}
+
+function floatTexture(linear: Float32Array, width: number, height: number): Texture {
+  if (linear.length !== 4 * width * height || linear.length === 0) throw new Error("no pixels");
+  const texture = new DataTexture(linear, width, height, RGBAFormat, FloatType);
+  texture.colorSpace = NoColorSpace;
+  texture.needsUpdate = true;
+  return texture;
+}
+
+/** A panorama as three.js wants environments: half floats, which every GPU filters. */
+export function environmentOf({ texture, width, height }: Picture): Texture {
+  const linear = (texture.image as { data: Float32Array }).data;
+  const halves = Uint16Array.from(linear, (value) => DataUtils.toHalfFloat(Math.min(value, LARGEST_HALF)));
+  const environment = new DataTexture(halves, width, height, RGBAFormat, HalfFloatType);
+  environment.mapping = EquirectangularReflectionMapping;
+  environment.colorSpace = LinearSRGBColorSpace;
+  environment.minFilter = environment.magFilter = LinearFilter;
+  environment.flipY = true;
+  environment.needsUpdate = true;
+  return environment;
+}
