@@ -4,7 +4,7 @@
 // A probe is five texels of `irradia_probes`: place and reach as the bits of floats, the reach negative where
 // the probe doesn't count; then 27 coefficients as pairs of halfs, and behind them the validity's bits. Two texels
 // of its map share a word of `irradia_probe_sight`: mean and deviation in 255ths of the reach, lowest byte first.
-// needs: octahedral
+// needs: octahedral, cosine-lobe
 // given: var irradia_probes: texture_2d_array<u32>
 // given: var irradia_probe_sight: texture_2d_array<u32>
 // given: var<uniform> irradia_probe_layout: array<vec4f>
@@ -83,7 +83,7 @@ fn irradia_probe_weight(
     return side * max(crushed, 1e-6);
 }
 
-// E from a probe alone, for a normal; may be negative. In the text's order of coefficients.
+// E from a probe alone, for a normal; may be negative. Coefficients stand in the order of cosine-lobe.
 fn irradia_probe_irradiance(probe: u32, n: vec3f) -> vec3f {
     let a = irradia_probe_texel(5u * probe + 1u);
     let b = irradia_probe_texel(5u * probe + 2u);
@@ -103,16 +103,17 @@ fn irradia_probe_irradiance(probe: u32, n: vec3f) -> vec3f {
     let cw = unpack2x16float(c.w);
     let dx = unpack2x16float(d.x);
     let dy = unpack2x16float(d.y);
-    // Real spherical harmonics times the cosine lobe: π, 2π/3 and π/4 by band.
-    var e = 0.886226925 * vec3f(ax, ay.x);
-    e += 1.023326708 * n.y * vec3f(ay.y, az);
-    e += 1.023326708 * n.z * vec3f(aw, bx.x);
-    e += 1.023326708 * n.x * vec3f(bx.y, by);
-    e += 0.858085531 * n.x * n.y * vec3f(bz, bw.x);
-    e += 0.858085531 * n.y * n.z * vec3f(bw.y, cx);
-    e += 0.247707956 * (3.0 * n.z * n.z - 1.0) * vec3f(cy, cz.x);
-    e += 0.858085531 * n.x * n.z * vec3f(cz.y, cw);
-    e += 0.429042765 * (n.x * n.x - n.y * n.y) * vec3f(dx, dy.x);
+    let linear = irradia_lobe_linear(n);
+    let quadratic = irradia_lobe_quadratic(n);
+    var e = linear.x * vec3f(ax, ay.x);
+    e += linear.y * vec3f(ay.y, az);
+    e += linear.z * vec3f(aw, bx.x);
+    e += linear.w * vec3f(bx.y, by);
+    e += quadratic.x * vec3f(bz, bw.x);
+    e += quadratic.y * vec3f(bw.y, cx);
+    e += quadratic.z * vec3f(cy, cz.x);
+    e += quadratic.w * vec3f(cz.y, cw);
+    e += irradia_lobe_squares(n) * vec3f(dx, dy.x);
     return e * irradia_probe_layout[4].x;
 }
 
