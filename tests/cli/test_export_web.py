@@ -235,7 +235,7 @@ def test_a_single_file_works_from_disk(export, baked: Path, tmp_path: Path, chro
     export(baked, "--single-file", tmp_path / "ä #1.html")
     with open_page(32, 32) as page:
         page.go((tmp_path / "ä #1.html").as_uri())
-        page.wait_for("document.documentElement?.dataset.state !== 'loading'", 30.0)
+        page.wait_for("['ready', 'error'].includes(document.documentElement?.dataset.state)", 30.0)
         shown = json.loads(page.evaluate("document.body.textContent"))
         assert page.complaints == []
     manifest, files = embedded((tmp_path / "ä #1.html").read_text())
