@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import struct
 from dataclasses import replace
@@ -24,16 +25,16 @@ from .stored_fields import GRID, PLANES, assert_same, light, made, places
 
 ABOUT = (
     '{"frame": {"aabb": [[-1.0, 0.0, 0.5], [1.0, 2.0, 4.5]], "quantity": "indirect", "scale": 4.0}, '
-    '"provenance": {"seed": 7}, "quantised": {}, '
+    '"provenance": {"seed": 7CHECKSUM}, "quantised": {}, '
     '"spec": {"activation": "relu", "direction": null, "head": "linear", "mode": "sh1", '
     '"n_hidden_layers": 1, "position": {"type": "identity"}, "width": 1}, "version": 1}'
 )
 SMALLEST = made(Identity(), "sh1", 4.0, width=1, layers=1)
 
 
-def golden() -> bytes:
+def golden(checksum: bool = True) -> bytes:
     """By hand: names in order, halves one after another, the header padded to eight bytes."""
-    at, entries, body = 0, {"__metadata__": {"irradia.field": ABOUT}}, b""
+    at, entries, body = 0, {"__metadata__": {}}, b""
     for name, shape in (
         ("mlp.0.bias", [1]),
         ("mlp.0.weight", [1, 3]),
@@ -44,6 +45,8 @@ def golden() -> bytes:
         body += struct.pack(f"<{len(values)}e", *values)
         entries[name] = {"dtype": "F16", "shape": shape, "data_offsets": [at, len(body)]}
         at = len(body)
+    noted = f', "tensors_sha256": "{hashlib.sha256(body).hexdigest()}"' if checksum else ""
+    entries["__metadata__"] = {"irradia.field": ABOUT.replace("CHECKSUM", noted)}
     text = json.dumps(entries, separators=(",", ":")).encode()
     text = text.ljust(-(-len(text) // 8) * 8)
     return struct.pack("<Q", len(text)) + text + body
@@ -142,7 +145,7 @@ CODED = made(GRID)
 
 
 def coded_file() -> tuple[dict, dict[str, np.ndarray]]:
-    """Metadata and tensors of a valid file with codes, to be damaged."""
+    """Metadata and tensors of a valid file with codes, without its checksum, to be damaged."""
     from safetensors.numpy import load
 
     tensors = to_tensors(CODED.spec, CODED.parameters)
@@ -152,6 +155,7 @@ def coded_file() -> tuple[dict, dict[str, np.ndarray]]:
     data = encode_field(QuantisedField(field, codes))
     n_bytes = struct.unpack_from("<Q", data)[0]
     about = json.loads(json.loads(data[8 : 8 + n_bytes])["__metadata__"]["irradia.field"])
+    del about["provenance"]["tensors_sha256"]
     return about, {name: values.copy() for name, values in load(data).items()}
 
 
@@ -282,8 +286,24 @@ def test_damage_is_refused_with_file_and_reason(tmp_path: Path, data: bytes, com
     assert caught.value.where == str(path)
 
 
-def test_any_flipped_byte_is_an_input_error_or_another_field() -> None:
+def test_a_flipped_bit_of_any_weight_is_damage() -> None:
     data = golden()
+    (n_bytes,) = struct.unpack_from("<Q", data)
+    for at in range(8 + n_bytes, len(data)):
+        damaged = bytearray(data)
+        damaged[at] ^= 0x01
+        with pytest.raises(InputError, match="weights are damaged"):
+            decode_field(bytes(damaged))
+
+
+def test_a_file_of_before_checksums_is_read_and_gets_one_when_saved_again() -> None:
+    stored = decode_field(golden(checksum=False))
+    assert stored.provenance == {"seed": 7}
+    assert encode_field(stored.field, stored.provenance) == golden()
+
+
+def test_any_flipped_byte_is_an_input_error_or_another_field() -> None:
+    data = golden(checksum=False)
     for at in range(len(data)):
         for flip in (0x01, 0x80, 0xFF):
             damaged = bytearray(data)

@@ -5,11 +5,15 @@ metadata has the single key ``irradia.field``, whose value is a JSON object with
 docs/field-files.md gives the rest. With a single key and JSON in sorted order, the same field has the same
 bytes.
 
+The object's ``provenance`` notes the SHA-256 of the bytes behind the header, so that a flipped bit is damage
+and no other light. Files without it, of earlier versions, are believed.
+
 A file may be packed by zstd as a whole (``.safetensors.zst``): readers tell by its first bytes.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 import struct
 from collections.abc import Mapping
@@ -23,6 +27,7 @@ from irradia.core.errors import InputError
 
 VERSION = 1
 KEY = "irradia.field"
+CHECKSUM = "tensors_sha256"
 ZSTD_MAGIC = b"\x28\xb5\x2f\xfd"
 ZSTD_LEVEL = 15  # 19 gains another 0.2 % and takes twelve times as long: half a minute for 24 MB
 MAX_BYTES = 1 << 32  # unpacked: more is damage, or an attack
@@ -52,8 +57,10 @@ def encode_tensors(content: FieldTensors, *, compress: bool = False) -> bytes:
     """
     from safetensors.numpy import save
 
-    text = json.dumps({"version": VERSION, **content.about}, sort_keys=True, allow_nan=False)
     tensors = {name: np.ascontiguousarray(values) for name, values in content.tensors.items()}
+    origin = {**content.about.get("provenance", {}), CHECKSUM: _checksum(save(tensors))}
+    about = {"version": VERSION, **content.about, "provenance": origin}
+    text = json.dumps(about, sort_keys=True, allow_nan=False)
     data = save(tensors, metadata={KEY: text})
     return _compress(data) if compress else data
 
@@ -73,7 +80,26 @@ def decode_tensors(data: bytes, where: str = "field") -> FieldTensors:
         stored = deserialize(data)
     except SafetensorError as error:
         raise InputError(f"it is damaged: {error}", where=where, fix="Export or train it again.") from error
+    noted = _take_checksum(about)
+    if noted is not None and noted != _checksum(data):
+        raise InputError(
+            "its weights are damaged: they aren't those whose checksum it notes",
+            where=where,
+            fix="Copy, export or train it again.",
+        )
     return FieldTensors(about, {name: _tensor(name, entry, where) for name, entry in stored})
+
+
+def _checksum(data: bytes) -> str:
+    """SHA-256 of the bytes behind the container's header."""
+    (n_bytes,) = struct.unpack_from("<Q", data)
+    return hashlib.sha256(memoryview(data)[8 + n_bytes :]).hexdigest()
+
+
+def _take_checksum(about: Mapping[str, Any]) -> Any:
+    """What the provenance notes, which is the file's own business: it goes no further."""
+    origin = about.get("provenance")
+    return origin.pop(CHECKSUM, None) if isinstance(origin, dict) else None
 
 
 def _about(data: bytes, where: str) -> Mapping[str, Any]:
