@@ -64,12 +64,15 @@ def cpu_device():
 
 
 @pytest.fixture(scope="session")
-def web_check():
+def web_check(tmp_path_factory):
     """Runs one of web/checks in node: ``web_check("validate", *arguments)`` gives its JSON.
 
     Fails where node or the packages of web/ are missing; ``make setup-dev`` installs both.
     """
     node, compiler = _node_and_compiler()
+    for package in ("runtime", "three"):  # in the order of their imports
+        folder = ROOT / "web" / "packages" / package
+        _build(folder, folder / "dist", tmp_path_factory.mktemp(package))
     subprocess.run([node, compiler, "--project", ROOT / "web"], check=True)
 
     def run(name: str, *arguments: Path | str) -> Any:
@@ -87,12 +90,10 @@ def runtime_node(tmp_path_factory):
     """Builds @irradia/runtime with its tests, and runs node on those: ``runtime_node("print-baked.js", …)``
     gives what the finished process printed, and its return code.
     """
-    node, compiler = _node_and_compiler()
+    node, _ = _node_and_compiler()
     package = ROOT / "web" / "packages" / "runtime"
     for project, out in ((package, package / "dist"), (package / "test", package / "build")):
-        built = tmp_path_factory.mktemp(out.name)
-        subprocess.run([node, compiler, "--project", project, "--outDir", built], check=True)
-        _put_in_place(built, out)
+        _build(project, out, tmp_path_factory.mktemp(out.name))
 
     def run(*arguments: Path | str) -> subprocess.CompletedProcess[str]:
         command = [node, *map(str, arguments)]
@@ -111,8 +112,12 @@ def _node_and_compiler() -> tuple[str, Path]:
     return node, compiler
 
 
-def _put_in_place(built: Path, out: Path) -> None:
-    """Replaces files whole and only where they changed: several processes of a run may do so at once."""
+def _build(project: Path, out: Path, built: Path) -> None:
+    """Compiles into ``built``, then replaces files of ``out``, whole and only where they changed: several
+    processes of a run may do so at once.
+    """
+    node, compiler = _node_and_compiler()
+    subprocess.run([node, compiler, "--project", project, "--outDir", built], check=True)
     for source in built.rglob("*.*"):
         target = out / source.relative_to(built)
         if not target.exists() or target.read_bytes() != source.read_bytes():

@@ -1,5 +1,5 @@
 /** Irradia's baked light in the browser: readers with strict checks, a readable evaluator, GPU textures. */
-export { InputError } from "./errors.js";
+export { expect, InputError } from "./errors.js";
 export type { Encoding, TensorSlot, Vec3 } from "./field/encoding.js";
 export { Composite } from "./field/encodings/composite.js";
 export { Frequency } from "./field/encodings/frequency.js";
@@ -57,7 +57,14 @@ export {
   WEBGL2_LIMITS,
   WEBGPU_LIMITS,
 } from "./gpu/texture.js";
-export { type BakedLight, type ReadBakedOptions, readBakedGlb, readFieldOf, readMap } from "./scene/baked.js";
+export {
+  type BakedLight,
+  type ReadBakedOptions,
+  readBaked,
+  readBakedGlb,
+  readFieldOf,
+  readMap,
+} from "./scene/baked.js";
 export { type BufferViews, type GltfFile, gltfFile, readGlb } from "./scene/glb.js";
 export {
   DIRECTIONAL_MAPS,
@@ -86,6 +93,9 @@ export {
   probeCoefficients,
   readProbes,
 } from "./scene/probes.js";
+export { composeText, type PieceChoices, type PiecePick, type ShaderPart } from "./shaders/compose.js";
+export { directionalShader } from "./shaders/directional-shader.js";
+export { fieldShader } from "./shaders/field-shader.js";
 export type {
   LightInput,
   LightShader,
@@ -95,3 +105,14 @@ export type {
   ShaderTexture,
   ShaderUniforms,
 } from "./shaders/light-shader.js";
+export { lightmapShader } from "./shaders/lightmap-shader.js";
+export { type ProbeShaderOptions, probeShader } from "./shaders/probe-shader.js";
+export {
+  halfSize,
+  type ScreenStage,
+  type ScreenView,
+  screenCall,
+  screenConstants,
+  screenText,
+} from "./shaders/screen.js";
+export { withDirect } from "./shaders/with-direct.js";

@@ -1,0 +1,60 @@
+/** Light evaluated once a pixel, by what a prepass says of the surface there. */
+import { composeText } from "./compose.js";
+import type { ShaderLanguage } from "./light-shader.js";
+
+/**
+ * What a full-screen pass writes: E at each pixel, E at every second pixel of every second row, or E at each
+ * pixel from the latter.
+ */
+export type ScreenStage = "full" | "half" | "upsample";
+
+/** Calls that give E, by stage, for a pixel as two unsigned integers. */
+const CALLS: Readonly<Record<ScreenStage, (pixel: string) => string>> = {
+  full: (pixel) => `irradia_screen_irradiance(${pixel})`,
+  half: (pixel) => `irradia_screen_irradiance(irradia_screen_sample(${pixel}))`,
+  upsample: (pixel) => `irradia_screen_upsampled(${pixel})`,
+};
+
+/**
+ * Functions of a stage, to be put behind those of a LightShader that takes position and normal alone.
+ *
+ * They read the prepass as `irradia_screen_surface`, light at half resolution as `irradia_screen_half`, and
+ * `screenConstants` as `irradia_screen_view`: two-dimensional textures of floats and an array of six vec4s.
+ */
+export function screenText(language: ShaderLanguage, stage: ScreenStage): string {
+  return composeText(language, [stage === "upsample" ? "screen-upsample" : "screen"]);
+}
+
+/** The expression of a stage's light at a pixel. */
+export function screenCall(stage: ScreenStage, pixel: string): string {
+  return CALLS[stage](pixel);
+}
+
+/** Texels along one side of the target of half resolution: one more than half, for pixels at the edge. */
+export function halfSize(size: number): number {
+  return (size >> 1) + 1;
+}
+
+/** How pixels see, in the order of matrices of glTF and WebGL: column by column. */
+export interface ScreenView {
+  readonly width: number;
+  readonly height: number;
+  /** clip_from_view. */
+  readonly projection: readonly number[];
+  readonly worldFromView: readonly number[];
+  /** Whether row 0 of targets is the bottom, as in WebGL. */
+  readonly isBottomUp: boolean;
+}
+
+/** Writes `irradia_screen_view`, which shaders/wgsl/screen.wgsl describes. */
+export function screenConstants(view: ScreenView, constants: Float32Array): void {
+  const { width, height, projection, worldFromView, isBottomUp } = view;
+  const at = (i: number): number => projection[i] ?? 0;
+  const isParallel = at(15) === 1;
+  const up = isBottomUp ? 1 : -1;
+  const shift = (axis: number): number => (isParallel ? -at(12 + axis) : at(8 + axis));
+  const slope = [(1 / width - 1 + shift(0)) / at(0), (up * (1 / height - 1) + shift(1)) / at(5)];
+  const steps = [2 / (width * at(0)), (2 * up) / (height * at(5))];
+  constants.set([...slope, ...steps, isParallel ? 1 : 0, 0, width, height]);
+  constants.set(worldFromView, 8);
+}
