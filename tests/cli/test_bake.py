@@ -20,10 +20,13 @@ from irradia.cli.bake_job import PRODUCTS, BakeJob, run_bake
 from irradia.cli.bake_report import convergence
 from irradia.cli.bake_views import ViewOptions, picture_size
 from irradia.core.progress import silent_progress
+from irradia.export import web_viewer
 from irradia.export.web_folder import collect
 from irradia.formats.hdr import read_hdr
 from irradia.formats.lightmap import read_lightmap
 from irradia.scene.lightmap_uv.options import LayoutOptions
+
+from .viewing import write_viewer
 
 SMALL = ["--resolution", "48", "--samples", "8"]
 
@@ -39,8 +42,10 @@ def job(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def summary(job):
-    return run_bake(job, silent_progress())
+def summary(job, tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(web_viewer, "PLACES", (write_viewer(tmp_path_factory.mktemp("viewer")),))
+        return run_bake(job, silent_progress())
 
 
 def test_everything_is_in_one_folder(job, summary):
@@ -50,6 +55,7 @@ def test_everything_is_in_one_folder(job, summary):
         "preview.png",
         "report.html",
         "scene.baked.glb",
+        "view.html",
         "view.png",
         "view0.reference.hdr",
     }
@@ -66,6 +72,13 @@ def test_the_reference_is_kept_with_its_camera(job, summary):
     assert collect([job.out]).scenes[0].references[0].camera.yfov_rad == pytest.approx(
         math.radians(view["camera"]["yfov_deg"])
     )
+
+
+def test_the_report_leads_to_a_live_view_of_all_that_was_baked(job, summary):
+    assert 'data-live="view.html"' in (job.out / "report.html").read_text()
+    page = (job.out / "view.html").read_text()
+    for name in ("scene.baked.glb", "view0.reference.hdr"):
+        assert re.search(rf'data-irradia-file="files/\d/{re.escape(name)}"', page)
 
 
 def test_every_product_is_one_that_a_later_bake_replaces(summary):

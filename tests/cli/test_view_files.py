@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from irradia.core.errors import InputError
+from irradia.export.container import glb_container
+from irradia.export.field_extension import put_field
 from irradia.export.web_folder import collect
 from irradia.formats.hdr import read_hdr
 
@@ -91,6 +93,16 @@ def test_a_file_has_one_address(baked: Path) -> None:
     collection = collect([baked], [baked / "field.safetensors", WEIGHTS])
     urls = [file.url for file in collection.files()]
     assert len(urls) == len(set(urls)) == 5  # scene, two references, two fields
+
+
+def test_a_copy_of_the_field_inside_is_not_shown_twice(baked: Path) -> None:
+    bare = glb_container(
+        {"asset": {"version": "2.0"}, "extensions": {"IRRADIA_lighting": {"version": 1}}}, b""
+    )
+    (baked / "bare.glb").write_bytes(bare)
+    put_field(baked / "bare.glb", WEIGHTS.read_bytes(), baked / "scene.baked.glb")
+    shutil.copyfile(ROOT / "vectors" / "hash-fp16.safetensors", baked / "other.safetensors")
+    assert [field.name for field in collect([baked]).scenes[0].fields] == ["other"]
 
 
 def test_addresses_are_safe_whatever_the_name(tmp_path: Path) -> None:

@@ -61,12 +61,17 @@ show().then(
 @pytest.fixture
 def viewer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The folder of a small viewer that is taken for the built one."""
-    folder = tmp_path / "viewer"
-    folder.mkdir()
+    folder = write_viewer(tmp_path / "viewer")
+    monkeypatch.setattr(web_viewer, "PLACES", (folder,))
+    return folder
+
+
+def write_viewer(folder: Path) -> Path:
+    """A viewer that shows what it has read."""
+    folder.mkdir(exist_ok=True)
     (folder / "index.html").write_text(PAGE)
     (folder / "viewer.js").write_text(SCRIPT)
     (folder / "viewer.css").write_text("body { margin: 0 }\n")
-    monkeypatch.setattr(web_viewer, "PLACES", (folder,))
     return folder
 
 

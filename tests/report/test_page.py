@@ -14,6 +14,7 @@ from irradia.report import (
     Comparison,
     Convergence,
     LightmapSummary,
+    LiveView,
     MapPicture,
     Performance,
     ReportData,
@@ -79,6 +80,15 @@ def data() -> ReportData:
         convergence=Convergence((1, 2, 4), (0.96, 1.01, 1.0)),
         notes=("Sun and sky were added.",),
     )
+
+
+def test_the_viewer_is_loaded_only_when_it_is_asked_for(data):
+    html = render_report(dataclasses.replace(data, live_view=LiveView('a "b".html', 3 << 20)))
+    assert [a for t, a in collect(html).tags if t == "iframe"] == []
+    (live,) = [a for _, a in collect(html).tags if "data-live" in a]
+    assert live["data-live"] == "a%20%22b%22.html"
+    assert "3 MiB" in html
+    assert "data-live=" not in render_report(data)
 
 
 def test_every_tag_is_closed(data):

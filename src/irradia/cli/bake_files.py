@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irradia.cli.bake_job import Baked, BakeJob, scene_hash
+from irradia.cli.bake_job import Baked, BakeJob
 from irradia.cli.field_job import FILE
 from irradia.cli.memory import peak_memory_bytes
+from irradia.cli.origin import scene_inputs
 from irradia.core import provenance
 from irradia.core.colour import automatic_exposure_ev, picture_srgb8
 from irradia.core.files import write_atomic, write_text_atomic
@@ -67,11 +68,15 @@ def write_products(
             folder, [baked.view.camera], [baked.view.reference], job.views.reference_spp
         )
         _write_picture(folder / "view.png", baked.view.baked)
+    write_text_atomic(folder / "bake.json", json.dumps(record, indent=2, allow_nan=False) + "\n")
+    if baked.view is not None:
         from irradia.cli.bake_report import report_data
+        from irradia.cli.live_view import write_live_view
         from irradia.report import write_report
 
-        write_report(folder / "report.html", report_data(job, baked, record))
-    write_text_atomic(folder / "bake.json", json.dumps(record, indent=2, allow_nan=False) + "\n")
+        write_report(
+            folder / "report.html", report_data(job, baked, record, write_live_view(folder, progress))
+        )
     return record
 
 
@@ -218,18 +223,10 @@ def make_provenance(job: BakeJob, scene: Scene, wall_s: float) -> provenance.Pro
     """How a bake came about: inputs, choices, versions, device, time."""
     from irradia.transport.backend import device
 
-    files = [job.light.env] if job.light.env is not None else []
-    files += [path for spec in (*job.overrides, *job.ies) if (path := _named_file(spec)) is not None]
-    inputs = {Path(job.scene).name: scene_hash(scene)}
-    inputs |= {path.name: provenance.sha256_file(path) for path in files}
+    inputs = scene_inputs(job, scene)
     return provenance.record(
         "bake", job.config(), seed=job.bake.seed, inputs=inputs, device=device, wall_s=wall_s
     )
-
-
-def _named_file(spec: str) -> Path | None:
-    """The file in ``FILE`` or ``NAME=FILE``, where there is one."""
-    return next((Path(part) for part in (spec, spec.rpartition("=")[2]) if Path(part).is_file()), None)
 
 
 def _write_picture(path: Path, radiance: NDArray[np.float32]) -> None:

@@ -21,6 +21,7 @@ from irradia.cli.bake_update import Revision
 from irradia.cli.bake_views import View, ViewOptions
 from irradia.cli.field_job import FieldOptions, FinishedField
 from irradia.cli.lighting import LightOptions, light_scene
+from irradia.cli.origin import scene_config, scene_hash, scene_origin
 from irradia.cli.staging import staged_folder
 from irradia.core import provenance
 from irradia.core.device import DeviceChoice
@@ -44,6 +45,7 @@ PRODUCTS = (
     "preview*.png",
     "view.png",
     "view*.reference.hdr",
+    "view.html",
     "scene.baked.glb",
     "bake.json",
     "bake.memory",
@@ -105,9 +107,7 @@ class BakeJob:
 
     def config(self) -> dict[str, Any]:
         """Every choice as plain values; files by their names, since folders differ between machines."""
-        plain = asdict(self)
-        plain["scene"] = Path(self.scene).name
-        plain["light"]["env"] = self.light.env.name if self.light.env else None
+        plain = asdict(self) | scene_config(self)
         if self.occlusion is not None and self.occlusion.distance_m == math.inf:
             plain["occlusion"]["distance_m"] = "inf"  # which JSON has no number for
         for name in ("out", "resume", "checkpoint_s"):
@@ -290,7 +290,8 @@ def _bake(job: BakeJob, progress: Progress, shards: Sequence[Shard]) -> Baked:
     made = None
     if job.neural_field is not None:
         lightmap = BakedPages(layout, shown)
-        made = field_of_bake(scene, lightmap, view, job.views, job.neural_field, progress)
+        origin = scene_origin(job, scene)
+        made = field_of_bake(scene, lightmap, view, job.views, job.neural_field, origin, progress)
     return replace(baked, view=view, neural_field=made)
 
 
@@ -346,15 +347,6 @@ def identity(job: BakeJob, scene: Scene, texels: TexelSet) -> dict[str, Any]:
         **{f"option {key}": value for key, value in config.items()},
     }
     return json.loads(json.dumps(same))  # as it comes back from a file: without tuples
-
-
-def scene_hash(scene: Scene) -> str:
-    """SHA-256 over the document with all that it refers to."""
-    document = scene.document
-    if document is None:
-        return provenance.sha256_bytes(scene.name.encode())
-    text = json.dumps(document.json, sort_keys=True, separators=(",", ":")).encode()
-    return provenance.sha256_bytes(text, *document.buffers, *document.images)
 
 
 def environment_hash(scene: Scene) -> str:

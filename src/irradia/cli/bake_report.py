@@ -12,12 +12,22 @@ from irradia.bake.lightmap import LightmapResult
 from irradia.cli.bake_job import Baked, BakeJob
 from irradia.cli.bake_views import View, ViewOptions
 from irradia.core.colour import automatic_exposure_ev
-from irradia.report import Comparison, Convergence, LightmapSummary, MapPicture, Performance, ReportData
+from irradia.report import (
+    Comparison,
+    Convergence,
+    LightmapSummary,
+    LiveView,
+    MapPicture,
+    Performance,
+    ReportData,
+)
 from irradia.report.pictures import display, error_colours
 from irradia.scene.types import Scene
 
 
-def report_data(job: BakeJob, baked: Baked, record: dict[str, Any]) -> ReportData:
+def report_data(
+    job: BakeJob, baked: Baked, record: dict[str, Any], live_view: LiveView | None = None
+) -> ReportData:
     """Everything that the report shows."""
     views = (_comparison(baked.view, job.views),) if baked.view and job.views else ()
     return ReportData(
@@ -37,6 +47,7 @@ def report_data(job: BakeJob, baked: Baked, record: dict[str, Any]) -> ReportDat
         convergence=convergence(record["stats"]["epochs"]),
         notes=(*baked.scene.notes, *baked.layout.notes),
         neural_field=baked.neural_field.summary if baked.neural_field else None,
+        live_view=live_view,
     )
 
 

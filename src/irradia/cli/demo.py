@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import shlex
+import shutil
+import sys
 from pathlib import Path
 
 import click
@@ -48,5 +51,12 @@ def command(as_json: bool, out: Path, reference_spp: int, seed: int, device: str
     progress.say("Baking the atrium, a scene of our own.")
     summary = run_bake(job, progress)
     progress.say(f"Open {out.resolve() / 'report.html'} in a browser.\n")
-    result = {**summary.record, "out": str(out), "files": list(summary.files)}
-    return finish(as_json, result, describe(job, summary), code_of(summary.complete))
+    result = {**summary.record, "out": str(out), "files": list(summary.files), "view": view_command(out)}
+    told = f"{describe(job, summary)}\n\nWalk through it:  {view_command(out)}"
+    return finish(as_json, result, told, code_of(summary.complete))
+
+
+def view_command(folder: Path) -> str:
+    """The command line that opens the viewer, as this shell understands it."""
+    program = "irradia" if shutil.which("irradia") else sys.argv[0]
+    return shlex.join([program, "view", str(folder)])

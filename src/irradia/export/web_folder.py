@@ -113,7 +113,7 @@ class _Addresses:
 
 
 def _scene(name: str, path: Path, place: Found, loose: Sequence[Found], addresses: _Addresses) -> WebScene:
-    weights = [*place.fields, *(path for other in loose for path in other.fields)]
+    weights = _beside(path, [*place.fields, *(path for other in loose for path in other.fields)])
     views = [*place.views, *(view for other in loose for view in other.views)]
     return WebScene(
         name,
@@ -121,6 +121,23 @@ def _scene(name: str, path: Path, place: Found, loose: Sequence[Found], addresse
         tuple(WebField(label, addresses.of(path)) for label, path in _labelled(weights)),
         tuple(_reference(view, addresses) for view in views),
     )
+
+
+def _beside(scene: Path, weights: Sequence[Path]) -> Sequence[Path]:
+    """Weights without copies of the field that the scene has inside, which the viewer shows anyway."""
+    from irradia.export.field_extension import baked_field_bytes, read_baked_document
+
+    if not weights:
+        return weights
+    try:
+        inside = baked_field_bytes(read_baked_document(scene))
+    except InputError:  # not baked, or damaged: the viewer tells of it
+        return weights
+    return [path for path in weights if inside is None or not _holds(path, inside)]
+
+
+def _holds(path: Path, data: bytes) -> bool:
+    return path.stat().st_size == len(data) and path.read_bytes() == data
 
 
 def _labelled(files: Sequence[Path]) -> list[tuple[str, Path]]:

@@ -42,13 +42,7 @@ def write_single_file(path: Path, viewer: Viewer, collection: WebCollection) -> 
         InputError: The files are too many bytes for one page.
         MissingDependencyError: The viewer isn't one that fits into a file.
     """
-    n_bytes = sum(file.path.stat().st_size for file in collection.files())
-    if n_bytes > MAX_BYTES:
-        raise InputError(
-            f"expected at most {MAX_BYTES:,} bytes of scenes and fields for one file, found {n_bytes:,}",
-            where=str(path),
-            fix="Use --web, which leaves them as files of their own.",
-        )
+    check_size(collection, path)
     before, after = _page(viewer, collection)
     with write_atomic(path) as stream:
         stream.write(before.encode("utf-8"))
@@ -56,6 +50,25 @@ def write_single_file(path: Path, viewer: Viewer, collection: WebCollection) -> 
             stream.writelines(_embedded(file))
         stream.write(after.encode("utf-8"))
         return stream.tell()
+
+
+def check_size(collection: WebCollection, path: Path) -> None:
+    """Refuses what no browser would open as one page.
+
+    Args:
+        collection: What it is to show.
+        path: The page that an error names.
+
+    Raises:
+        InputError: The files are too many bytes.
+    """
+    n_bytes = sum(file.path.stat().st_size for file in collection.files())
+    if n_bytes > MAX_BYTES:
+        raise InputError(
+            f"expected at most {MAX_BYTES:,} bytes of scenes and fields for one file, found {n_bytes:,}",
+            where=str(path),
+            fix="Use --web, which leaves them as files of their own.",
+        )
 
 
 def _page(viewer: Viewer, collection: WebCollection) -> tuple[str, str]:

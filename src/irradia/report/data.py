@@ -176,6 +176,19 @@ class EvaluationData:
 
 
 @dataclass(frozen=True)
+class LiveView:
+    """The viewer with what was baked, as a file beside the report.
+
+    Attributes:
+        file: Its name.
+        n_bytes: What opening it loads.
+    """
+
+    file: str
+    n_bytes: int
+
+
+@dataclass(frozen=True)
 class ReportData:
     """Everything in one report.
 
@@ -186,6 +199,7 @@ class ReportData:
         notes: What the user should know: defaults taken, things unsupported.
         provenance: :meth:`irradia.core.provenance.Provenance.to_dict`.
         neural_field: Where one was trained from the bake.
+        live_view: Where there is one.
     """
 
     title: str
@@ -197,3 +211,4 @@ class ReportData:
     convergence: Convergence | None = None
     notes: tuple[str, ...] = ()
     neural_field: FieldSummary | None = None
+    live_view: LiveView | None = None

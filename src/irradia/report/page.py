@@ -11,6 +11,7 @@ from irradia.core.files import write_text_atomic
 from irradia.report import charts, text
 from irradia.report.comparison import comparison_section
 from irradia.report.data import Convergence, LightmapSummary, MapPicture, Performance, ReportData
+from irradia.report.live_view import live_section
 from irradia.report.neural_field import field_sections
 from irradia.report.pictures import F32, data_uri, map_display, page_display
 from irradia.report.sheet import card, pairs, provenance, section, sheet
@@ -32,6 +33,7 @@ def render_report(data: ReportData) -> str:
         (
             *(comparison_section(view, index) for index, view in enumerate(data.comparisons)),
             *field,
+            live_section(data.live_view),
             section("Lightmap", _lightmap(data.lightmap)),
             section("Cost", card(_performance(data.performance))),
             section("Mean ratio over samples", _convergence(data.convergence)),

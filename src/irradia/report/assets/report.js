@@ -124,6 +124,17 @@ document.addEventListener("keydown", (event) => {
   nearest.buttons[Number(event.key) - 1]?.click();
 });
 
+/** The viewer takes the place of the button that asks for it. */
+for (const live of document.querySelectorAll("[data-live]")) {
+  const button = live.querySelector("button");
+  button.addEventListener("click", () => {
+    const frame = document.createElement("iframe");
+    Object.assign(frame, { src: live.dataset.live, title: "Live view", allow: "fullscreen" });
+    button.replaceWith(frame);
+    frame.focus();
+  });
+}
+
 /** A click on a heading sorts its table by that column; another turns the order round. */
 for (const table of document.querySelectorAll("table.sortable")) {
   const headings = [...table.querySelectorAll("th")];
