@@ -1,4 +1,5 @@
 /** Puts everything together: files to scene, state to picture, picture to page. */
+import { limitsOf } from "@irradia/three/webgpu";
 import { WEBGL2_LIMITS } from "@irradia/runtime";
 import type { WebGPURenderer } from "three/webgpu";
 import { framePose, isSamePose, type Pose } from "./camera/pose.js";
@@ -37,7 +38,7 @@ export class App {
     this.session = new Session({
       stage: this.#stage,
       status,
-      limits: () => WEBGL2_LIMITS,
+      limits: () => (this.#renderer ? limitsOf(this.#renderer) : WEBGL2_LIMITS),
       onScene: () => this.#welcome(),
       onPose: (pose) => this.lookFrom(pose),
       onLight: () => this.#resolve(),
@@ -198,7 +199,7 @@ export class App {
     const { model } = this.#stage;
     if (!model || !this.#frame) return;
     const told =
-      wanted === "file" && model.light?.baked?.lighting.lightmap ? model.light.exposure : undefined;
+      wanted === "file" && model.light.baked?.lighting.lightmap ? model.light.exposure : undefined;
     const ev = typeof wanted === "number" ? wanted : (told ?? (await this.#frame.meter()));
     if (Math.abs(ev - this.status.value.ev) > 0.01) {
       this.status.set({ ev });
@@ -206,8 +207,17 @@ export class App {
     }
     const difference = compare === "single" ? undefined : await this.#frame.measure(this.#frameOptions());
     this.status.set({ difference });
-    this.state.set({ camera: this.#rig.pose });
+    this.#keepPose();
     if (this.status.value.phase === "loading") this.status.set({ phase: "ready", message: "" });
+  }
+
+  /** Repeats in the state where the camera came to rest, unless that is where it would start. */
+  #keepPose(): void {
+    const { model } = this.#stage;
+    const { camera } = this.state.value;
+    const { pose } = this.#rig;
+    const known = camera ?? (model && startPose(model, this.#stage.camera.aspect));
+    if (!known || !isSamePose(known, pose)) this.state.set({ camera: pose });
   }
 
   #time(gpuMs: number | undefined, cpuMs: number): void {

@@ -4,6 +4,7 @@ import { diagonal, type Pose } from "./camera/pose.js";
 import { openFile } from "./files/bytes.js";
 import { readCameraFile } from "./files/camera-file.js";
 import { fileName, isPanorama, kindOf, type NamedFile } from "./files/kinds.js";
+import { addField, loadField } from "./files/load-field.js";
 import { loadScene } from "./files/load-scene.js";
 import type { ManifestPicture, ManifestScene } from "./files/manifest.js";
 import { environmentOf, type Picture, readPicture, readRadiance } from "./files/picture.js";
@@ -57,7 +58,7 @@ export class Session {
     for (const [index, field] of entry.fields.entries()) {
       await this.#try(field.name, async () => {
         const bytes = await this.fetch(field.url);
-        this.#addField({ name: fileName(field.url), bytes }, `field:${index}`);
+        await this.#addField({ name: fileName(field.url), bytes }, `field:${index}`);
       });
     }
     for (const picture of entry.references) await this.#try(picture.name, () => this.#openReference(picture));
@@ -116,10 +117,10 @@ export class Session {
     throw new InputError("expected a file that the viewer knows, found another", file.name, fix);
   }
 
-  #addField(file: NamedFile, id: string): void {
-    void file;
-    void id;
-    this.#options.onLight();
+  async #addField(file: NamedFile, id: string): Promise<void> {
+    const { stage, limits, onLight } = this.#options;
+    addField(stage.model, await loadField(file), id, limits());
+    onLight();
   }
 
   #addRadiance(picture: Picture): void {

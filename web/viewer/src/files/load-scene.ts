@@ -1,5 +1,6 @@
 /** .glb and .gltf to a model, with its baked light. */
 import { InputError, type TextureLimits } from "@irradia/runtime";
+import { irradia } from "@irradia/three/webgpu";
 import { MeshoptDecoder } from "three/addons/libs/meshopt_decoder.module.js";
 import { type GLTF, GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { LoadingManager } from "three/webgpu";
@@ -25,10 +26,10 @@ export async function loadScene(
   checkExtensions(file);
   const { manager, revoke } = managerOf(others);
   const loader = new GLTFLoader(manager).setMeshoptDecoder(MeshoptDecoder);
-  void limits;
+  loader.register(irradia({ limits }));
   try {
     const gltf = await parse(loader, file);
-    return makeModel(file.name, file.bytes.length, gltf.scene, undefined);
+    return makeModel(file.name, file.bytes.length, gltf.scene, gltf.userData.irradia);
   } catch (error) {
     if (error instanceof InputError) throw error;
     const message = error instanceof Error ? error.message : String(error);

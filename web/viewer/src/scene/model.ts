@@ -1,5 +1,6 @@
 /** A loaded scene, whichever file it came from. */
-import type { SceneLight } from "@irradia/three";
+import type { Field } from "@irradia/runtime";
+import type { SceneLight } from "@irradia/three/webgpu";
 import { Box3, type Group, type Mesh, type Object3D, PerspectiveCamera, Vector3 } from "three/webgpu";
 import { type Box, centre, framePose, type Pose, poseFromMatrix } from "../camera/pose.js";
 
@@ -14,16 +15,18 @@ export interface Model {
   /** Of the file, as it came. */
   readonly bytes: number;
   readonly root: Group;
-  readonly light: SceneLight | undefined;
+  readonly light: SceneLight;
   readonly box: Box;
   readonly cameras: readonly NamedPose[];
   readonly nTriangles: number;
+  /** By the names of their sources: the file's own, and those that were added. */
+  readonly fields: Map<string, Field>;
   /** Whether it has lights of its own. */
   readonly hasLights: boolean;
 }
 
 /** What is known of a scene once it is loaded. */
-export function makeModel(name: string, bytes: number, root: Group, light: SceneLight | undefined): Model {
+export function makeModel(name: string, bytes: number, root: Group, light: SceneLight): Model {
   root.updateMatrixWorld(true);
   const box = boxOf(root);
   let [nTriangles, hasLights] = [0, false];
@@ -31,7 +34,8 @@ export function makeModel(name: string, bytes: number, root: Group, light: Scene
     nTriangles += trianglesOf(object);
     hasLights ||= "isLight" in object;
   });
-  return { name, bytes, root, light, box, cameras: camerasOf(root, box), nTriangles, hasLights };
+  const fields = new Map<string, Field>(light.baked?.field ? [["field", light.baked.field]] : []);
+  return { name, bytes, root, light, box, cameras: camerasOf(root, box), nTriangles, fields, hasLights };
 }
 
 /** What a camera sees at first: the file's own, else all of the scene. */
@@ -41,7 +45,7 @@ export function startPose(model: Model, aspect: number): Pose {
 
 /** Frees what a model has on the GPU. */
 export function disposeModel({ root, light }: Model): void {
-  light?.dispose();
+  light.dispose();
   root.traverse((object) => {
     const { geometry, material } = object as Mesh;
     geometry?.dispose();

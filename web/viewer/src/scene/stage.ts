@@ -48,7 +48,7 @@ export class Stage {
   #light(): void {
     const model = this.#model;
     const isLit =
-      !model || model.hasLights || model.light?.baked !== undefined || this.#environment !== undefined;
+      !model || model.hasLights || model.light.baked !== undefined || this.#environment !== undefined;
     if (isLit) this.scene.remove(this.#studio);
     else this.scene.add(this.#studio);
   }

@@ -1,5 +1,5 @@
 /** One frame: each side into its own target, then both onto the canvas. */
-import type { View as LightView, SceneLight } from "@irradia/three";
+import type { View as LightView, SceneLight } from "@irradia/three/webgpu";
 import type { Camera, RenderTarget, Scene, WebGPURenderer } from "three/webgpu";
 import { FloatType } from "three/webgpu";
 import type { Picture } from "../files/picture.js";

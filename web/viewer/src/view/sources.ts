@@ -1,5 +1,5 @@
 /** What can stand on either side: sources of light, by the names that @irradia/three gives them, and pictures. */
-import type { LightSource } from "@irradia/three";
+import type { LightSource } from "@irradia/three/webgpu";
 import type { Pose } from "../camera/pose.js";
 import type { Picture } from "../files/picture.js";
 

@@ -1,5 +1,6 @@
 /** Numbers about what is drawn, for the panel. */
-import type { LightSource, SceneLight } from "@irradia/three";
+import type { Field } from "@irradia/runtime";
+import type { LightSource } from "@irradia/three/webgpu";
 import type { Model } from "../scene/model.js";
 import type { BackendName } from "./renderer.js";
 
@@ -24,7 +25,7 @@ export function statisticsOf(
   size: readonly [number, number],
 ): Statistic[] {
   const shader = source?.shader;
-  const nParameters = source?.kind === "field" ? parametersOf(model.light) : undefined;
+  const field = model.fields.get(source?.name ?? "");
   const hint =
     times.gpuMs === undefined
       ? "By the CPU's clock: this browser has no timestamp queries."
@@ -46,7 +47,7 @@ export function statisticsOf(
           { label: "Fetches", value: `${shader.cost.fetches.toLocaleString("en")} /px` },
         ]
       : []),
-    ...(nParameters ? [{ label: "Parameters", value: nParameters.toLocaleString("en") }] : []),
+    ...(field ? [{ label: "Parameters", value: parametersOf(field).toLocaleString("en") }] : []),
   ];
 }
 
@@ -57,10 +58,8 @@ export function bytesText(bytes: number): string {
   return `${value.toFixed(value < 10 ? 1 : 0)} ${unit}`;
 }
 
-function parametersOf(light: SceneLight | undefined): number | undefined {
-  const field = light?.baked?.field;
-  if (!field) return undefined;
+function parametersOf({ tensors }: Field): number {
   let total = 0;
-  for (const { shape } of field.tensors.values()) total += shape.reduce((n, side) => n * side, 1);
+  for (const { shape } of tensors.values()) total += shape.reduce((n, side) => n * side, 1);
   return total;
 }

@@ -1,0 +1,37 @@
+/** Fields from files of their own to sources of light. */
+import {
+  expect,
+  type Field,
+  fieldShader,
+  readField,
+  readFieldBin,
+  type TextureLimits,
+  type Unzstd,
+} from "@irradia/runtime";
+import { ZSTDDecoder } from "three/addons/libs/zstddec.module.js";
+import type { Model } from "../scene/model.js";
+import { kindOf, type NamedFile } from "./kinds.js";
+
+/** Reads .safetensors, packed or not, and .bin of our own conventions. */
+export async function loadField(file: NamedFile): Promise<Field> {
+  const { name, bytes } = file;
+  if (kindOf(file) === "field-bin") return readFieldBin(bytes, name);
+  return readField(bytes, { unzstd: await readyUnzstd(), where: name });
+}
+
+/**
+ * Makes a field a source of a scene's light.
+ *
+ * @param id what the source is to be named
+ */
+export function addField(model: Model | undefined, field: Field, id: string, limits: TextureLimits): void {
+  expect(model !== undefined, "a field lights a scene, and there is none", id, "Drop its scene first.");
+  model.light.add(id, fieldShader(field, limits));
+  model.fields.set(id, field);
+}
+
+async function readyUnzstd(): Promise<Unzstd> {
+  const decoder = new ZSTDDecoder();
+  await decoder.init();
+  return (packed, nBytes) => decoder.decode(packed, nBytes);
+}
