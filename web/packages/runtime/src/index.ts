@@ -109,6 +109,8 @@ export { lightmapShader } from "./shaders/lightmap-shader.js";
 export { type ProbeShaderOptions, probeShader } from "./shaders/probe-shader.js";
 export {
   halfSize,
+  isForScreens,
+  prepassText,
   type ScreenStage,
   type ScreenView,
   screenCall,
