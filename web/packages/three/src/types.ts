@@ -29,9 +29,9 @@ export interface LightSource {
    * none of ours.
    */
   readonly shader: LightShader | undefined;
-  /** The same without the file's map of direct light, as what moves is lit. */
+  /** The same without the file's map of direct light. */
   readonly bare: LightShader | undefined;
-  /** Whether, bare, it needs position and normal alone, so that it also lights what moves or has no lightmap uv. */
+  /** Whether, bare, it needs position and normals alone, so that it also lights what moves or has no lightmap. */
   readonly isDynamic: boolean;
 }
 

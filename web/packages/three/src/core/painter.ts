@@ -6,7 +6,7 @@ import type { View } from "../types.js";
 /** How a material is to show its light. */
 export interface Shading {
   /** Whence E comes; undefined is no light of ours. */
-  readonly light: LightShader | ScreenLight | undefined;
+  readonly light: LightShader | ScreenLight | GridLight | undefined;
   /** Direct light that a screen light leaves to the material. */
   readonly direct: LightShader | undefined;
   readonly view: View | null;
@@ -20,6 +20,11 @@ export const CHECKER_TEXELS = 4;
 /** E by pixel; `texture` may be exchanged while materials draw with it. */
 export class ScreenLight {
   constructor(public texture: Texture) {}
+}
+
+/** three.js' own grid of light probes, which stands in the scene and adds its light by itself. */
+export class GridLight {
+  constructor(readonly grid: Object3D) {}
 }
 
 /** Writes light into materials; one for each scene. */

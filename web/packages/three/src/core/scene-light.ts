@@ -3,7 +3,7 @@ import { type BakedLight, expect, type LightShader, lightmapShader } from "@irra
 import type { Group, Light, Material, Mesh, Object3D, Texture } from "three";
 import type { DirectFrom, LightSource, LitSurface, SceneLight, SourceKind, View } from "../types.js";
 import type { FileLights } from "./file-lights.js";
-import { type Painter, ScreenLight, type Shading } from "./painter.js";
+import { GridLight, type Painter, ScreenLight, type Shading } from "./painter.js";
 import { directOf, noSource, Source, sourceNamed, sourcesOf } from "./sources.js";
 import { isMesh, looseSurface } from "./surfaces.js";
 import { disposeTextures } from "./textures.js";
@@ -32,7 +32,7 @@ export class BakedSceneLight implements SceneLight {
   #dynamic: Source | undefined;
   #view: View | null = null;
   #screen: ScreenLight | null = null;
-  #grid: Object3D | undefined;
+  #grid: GridLight | undefined;
   #direct: LightShader | undefined;
 
   constructor({ scene, baked, surfaces, lights }: LoadedScene, painter: Painter, first?: string) {
@@ -64,7 +64,7 @@ export class BakedSceneLight implements SceneLight {
 
   add(name: string, shader: LightShader, kind: SourceKind = "field"): LightSource {
     const direct = directOf(this.baked, this.#painter.limits);
-    const source = new Source(name, kind, shader.quantity, () => shader, direct);
+    const source = new Source(name, kind, shader.quantity, { make: () => shader, direct });
     const old = this.#sources.find((other) => other.name === name);
     this.#sources = [...this.#sources.filter((other) => other !== old).slice(0, -1), source, this.#none()];
     if (this.#source === old) this.#source = source;
@@ -105,7 +105,7 @@ export class BakedSceneLight implements SceneLight {
 
   set dynamicSource(name: string | null) {
     const source = name === null ? undefined : sourceNamed(this.#sources, name);
-    expect(!source || isMobile(source), "expected a source that needs position and normal alone", `${name}`);
+    expect(!source || isMobile(source), "expected a source that needs no lightmap", `${name}`);
     this.#dynamic = source;
     this.#apply();
   }
@@ -185,7 +185,7 @@ export class BakedSceneLight implements SceneLight {
   dispose(): void {
     for (const { mesh } of this.#surfaces.values()) this.#wardrobe.undress(mesh);
     this.#wardrobe.clear();
-    this.#grid?.removeFromParent();
+    this.#grid?.grid.removeFromParent();
     for (const source of this.#sources) for (const shader of source.made) disposeTextures(shader);
   }
 
@@ -231,18 +231,23 @@ export class BakedSceneLight implements SceneLight {
     return this.#direct;
   }
 
-  #lightOf(hasLightmap: boolean, isDynamic: boolean): LightShader | undefined {
-    if (this.#source.kind === "three-probes") return undefined; // lights whatever stands in it
+  #lightOf(hasLightmap: boolean, isDynamic: boolean): LightShader | GridLight | undefined {
+    if (this.#source.kind === "three-probes") return this.#threeGrid();
     if (hasLightmap) return this.#source.shader;
     if (this.#source.kind === "none") return undefined;
-    return !isDynamic && this.#source.isDynamic ? this.#source.bare : this.#dynamic?.bare;
+    return !isDynamic && this.#source.isDynamic ? this.#source.bare : this.#dynamic?.moving;
+  }
+
+  #threeGrid(): GridLight | undefined {
+    const { probes } = this.baked ?? {};
+    if (probes) this.#grid ??= new GridLight(this.#painter.probeGrid(probes));
+    return this.#grid;
   }
 
   #showGrid(isShown: boolean): void {
-    const { probes } = this.baked ?? {};
-    if (isShown && probes) this.#grid ??= this.#painter.probeGrid(probes);
-    if (this.#grid && isShown) this.scene.add(this.#grid);
-    if (this.#grid && !isShown) this.#grid.removeFromParent();
+    const grid = isShown ? this.#threeGrid()?.grid : undefined;
+    if (grid) this.scene.add(grid);
+    else this.#grid?.grid.removeFromParent();
   }
 }
 

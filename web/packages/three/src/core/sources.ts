@@ -14,41 +14,53 @@ import {
 } from "@irradia/runtime";
 import type { LightSource, SourceKind } from "../types.js";
 
-/** Inputs that every point in space has. */
-const EVERYWHERE = new Set(["position", "normal"]);
+/** Inputs that every surface has, with a lightmap or without. */
+const EVERYWHERE = new Set(["position", "normal", "surfaceNormal"]);
 
-/** A source, with the shader that static meshes get: with the map of direct light where that is missing. */
+/** How a source's shaders come about; each is made when first asked for. */
+interface Making {
+  readonly make?: (() => LightShader) | undefined;
+  /** Adds the map of direct light, where that is missing. */
+  readonly direct?: ((shader: LightShader) => LightShader) | undefined;
+  /** For what moves, where that is read in another way. */
+  readonly moving?: ((bare: LightShader) => LightShader) | undefined;
+}
+
 export class Source implements LightSource {
-  readonly #make: (() => LightShader) | undefined;
-  readonly #direct: ((shader: LightShader) => LightShader) | undefined;
+  readonly #making: Making;
   #bare: LightShader | undefined;
   #whole: LightShader | undefined;
+  #moving: LightShader | undefined;
 
   constructor(
     readonly name: string,
     readonly kind: SourceKind,
     readonly quantity: Quantity,
-    make?: () => LightShader,
-    direct?: (shader: LightShader) => LightShader,
+    { make, direct, moving }: Making = {},
   ) {
-    this.#make = make;
-    this.#direct = quantity === "indirect" ? direct : undefined;
+    this.#making = { make, moving, direct: quantity === "indirect" ? direct : undefined };
   }
 
-  /** As it is, for what moves. */
   get bare(): LightShader | undefined {
-    this.#bare ??= this.#make?.();
+    this.#bare ??= this.#making.make?.();
     return this.#bare;
   }
 
   get shader(): LightShader | undefined {
     const { bare } = this;
-    this.#whole ??= bare && this.#direct ? this.#direct(bare) : bare;
+    this.#whole ??= bare && (this.#making.direct?.(bare) ?? bare);
     return this.#whole;
   }
 
+  /** For what moves. */
+  get moving(): LightShader | undefined {
+    const { bare } = this;
+    this.#moving ??= bare && (this.#making.moving?.(bare) ?? bare);
+    return this.#moving;
+  }
+
   get hasDirectMap(): boolean {
-    return this.#direct !== undefined;
+    return this.#making.direct !== undefined;
   }
 
   get isDynamic(): boolean {
@@ -57,7 +69,7 @@ export class Source implements LightSource {
 
   /** Shaders that were made. */
   get made(): LightShader[] {
-    return [this.#bare, this.#whole].filter((shader) => shader !== undefined);
+    return [this.#bare, this.#whole, this.#moving].filter((shader) => shader !== undefined);
   }
 }
 
@@ -75,25 +87,29 @@ export function sourcesOf(baked: BakedLight, hasLiveLights: boolean, limits: Tex
   const { lighting, lightmap, directional, field, probes } = baked;
   const quantity = hasLiveLights ? "indirect" : "full";
   const sources: Source[] = [];
-  const add = (kind: SourceKind, light: Quantity, make?: () => LightShader, hasDirect = false): void => {
-    sources.push(new Source(kind, kind, light, make, hasDirect ? directOf(baked, limits) : undefined));
+  const add = (kind: SourceKind, light: Quantity, making: Making): void => {
+    sources.push(new Source(kind, kind, light, making));
   };
   if (lightmap && lighting.lightmap) {
     const { scale } = lighting.lightmap;
-    add("lightmap", quantity, () => lightmapShader(lightmap, scale, quantity, limits));
+    add("lightmap", quantity, { make: () => lightmapShader(lightmap, scale, quantity, limits) });
   }
-  if (directional) add("directional", quantity, () => directionalShader(baked, limits));
-  if (field) add("field", field.frame.quantity, () => fieldShader(field, limits), true);
-  if (probes) {
-    add("probes", probes.light, () => probeShader(probes, limits));
-    if (hasGrid(probes)) add("three-probes", probes.light);
+  if (directional) add("directional", quantity, { make: () => directionalShader(baked, limits) });
+  if (field) {
+    const make = () => fieldShader(field, limits);
+    add("field", field.frame.quantity, { make, direct: directOf(baked, limits) });
   }
+  if (probes?.structure) {
+    const make = () => probeShader(probes, limits);
+    add("probes", probes.light, { make, moving: (bare) => amongProbes(probes, bare, limits) });
+  }
+  if (probes?.structure?.kind === "grid") add("three-probes", probes.light, {});
   return sources;
 }
 
-/** Whether three.js' LightProbeGrid can hold them. */
-export function hasGrid(probes: Probes): boolean {
-  return probes.structure?.kind === "grid";
+/** Probes for what moves between them, by the textures that surfaces read. */
+function amongProbes(probes: Probes, { textures }: LightShader, limits: TextureLimits): LightShader {
+  return { ...probeShader(probes, limits, { lit: "things" }), textures };
 }
 
 /** How the file's map of direct light is added to a source; undefined where it has none. */

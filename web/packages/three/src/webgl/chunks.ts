@@ -45,6 +45,8 @@ varying vec2 vIrradiaUv;
 flat varying float vIrradiaPage;`,
   screenDeclarations: `uniform highp sampler2D irradiaScreen;`,
   screen: "texelFetch(irradiaScreen, ivec2(gl_FragCoord.xy), 0).rgb",
+  /** What three.js has added up by itself. */
+  own: "irradiance",
   /** Normals and tangent in world space; three.js turns its normal to the viewer where a material has two sides. */
   frame: `
 vec3 irradiaNormal = normalize((vec4(normal, 0.0) * viewMatrix).xyz);

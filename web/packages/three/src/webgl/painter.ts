@@ -1,7 +1,7 @@
 /** Light in the materials of WebGLRenderer, by onBeforeCompile. */
 import type { LightShader, LightView, Probes, TextureLimits } from "@irradia/runtime";
 import type { IUniform, Material, Object3D, WebGLProgramParametersWithUniforms } from "three";
-import { type Painter, ScreenLight, type Shading } from "../core/painter.js";
+import { GridLight, type Painter, ScreenLight, type Shading } from "../core/painter.js";
 import type { Inputs } from "../types.js";
 import { bindGlsl, callOf } from "./bind.js";
 import { FRAGMENT, VERTEX } from "./chunks.js";
@@ -47,7 +47,7 @@ export class WebGLPainter implements Painter {
   #uniformsOf({ light, direct }: Shading): Record<string, IUniform> {
     const intensity = { irradiaIntensity: this.#intensity, ...(direct && bindGlsl(direct).uniforms) };
     if (light instanceof ScreenLight) return { ...intensity, irradiaScreen: this.#uniformOf(light) };
-    return { ...intensity, ...(light && bindGlsl(light).uniforms) };
+    return { ...intensity, ...(isShader(light) && bindGlsl(light).uniforms) };
   }
 
   #uniformOf(screen: ScreenLight): IUniform {
@@ -80,27 +80,36 @@ function fragmentPieces(shading: Shading): Pieces {
   const varyings = [FRAGMENT.declarations, lightmap && FRAGMENT.lightmapDeclarations];
   return {
     common: [...varyings, ...textsOf(shading)].filter(Boolean).join("\n"),
-    lights_fragment_begin: `${FRAGMENT.frame}\nvec3 irradiaLight = irradiaIntensity * (${irradiance(shading, inputs)});`,
-    ...(light && { lights_fragment_end: FRAGMENT.noSky, aomap_fragment: FRAGMENT.add }),
+    lights_fragment_begin: `${FRAGMENT.frame}\nvec3 irradiaLight = ${irradiance(shading, inputs)};`,
+    ...(light && { lights_fragment_end: FRAGMENT.noSky }),
+    ...(light && !(light instanceof GridLight) && { aomap_fragment: FRAGMENT.add }),
     ...(view && { "!opaque_fragment": `outgoingLight = ${viewOf(shading, inputs)};` }),
   };
 }
 
 function textsOf({ light, direct }: Shading): (string | undefined)[] {
-  if (!(light instanceof ScreenLight)) return [light && bindGlsl(light).text];
-  return [FRAGMENT.screenDeclarations, direct && bindGlsl(direct).text];
+  if (light instanceof ScreenLight) return [FRAGMENT.screenDeclarations, direct && bindGlsl(direct).text];
+  return [isShader(light) ? bindGlsl(light).text : undefined];
 }
 
 function irradiance({ light, direct }: Shading, inputs: Expressions): string {
-  if (!light) return "vec3(0.0)";
-  if (!(light instanceof ScreenLight)) return callOf(light, inputs);
-  return direct ? `${FRAGMENT.screen} + ${callOf(direct, inputs)}` : FRAGMENT.screen;
+  if (light instanceof GridLight) return FRAGMENT.own;
+  const terms = [
+    light instanceof ScreenLight && FRAGMENT.screen,
+    isShader(light) && callOf(light, inputs),
+    direct && callOf(direct, inputs),
+  ];
+  return `irradiaIntensity * (${terms.filter(Boolean).join(" + ") || "vec3(0.0)"})`;
+}
+
+function isShader(light: Shading["light"]): light is LightShader {
+  return light !== undefined && "entry" in light;
 }
 
 function viewOf({ light, view, lightmap }: Shading, inputs: Expressions): string {
   if (view === "lightmap-uv") return lightmap ? FRAGMENT.checker(lightmap) : "vec3(0.0)";
   const common = FRAGMENT.views[view ?? ""];
   if (common) return common;
-  const hasView = light && !(light instanceof ScreenLight) && light.views[view as LightView];
-  return hasView ? callOf(light as LightShader, inputs, view as LightView) : FRAGMENT.missingView;
+  const hasView = isShader(light) && light.views[view as LightView];
+  return hasView ? callOf(light, inputs, view as LightView) : FRAGMENT.missingView;
 }

@@ -1,13 +1,13 @@
 /** Light in the materials of WebGPURenderer, by their context's getGI. */
-import type { LightShader, LightView, Probes, TextureLimits } from "@irradia/runtime";
+import type { LightView, Probes, TextureLimits } from "@irradia/runtime";
 import type { Material, Object3D } from "three";
 import { context, Fn, renderGroup, screenUV, texture, uniform, vec3, vec4 } from "three/tsl";
 import type { Node, NodeBuilder, TextureNode } from "three/webgpu";
-import { type Painter, ScreenLight, type Shading } from "../core/painter.js";
+import { GridLight, type Painter, ScreenLight, type Shading } from "../core/painter.js";
 import type { Inputs } from "../types.js";
 import { lightNode } from "./bind.js";
 import { inputsOf } from "./inputs.js";
-import { probeGrid } from "./probe-grid.js";
+import { ownIrradiance, probeGrid } from "./probe-grid.js";
 import { commonView, MISSING_VIEW } from "./views.js";
 
 type Vec3Node = Node<"vec3">;
@@ -62,6 +62,7 @@ export class WebGPUPainter implements Painter {
       const { ambientOcclusion, iblIrradiance } = builder.context as LightingContext;
       // All indirect light is multiplied by the occlusion, which baked light holds already. It holds the sky as
       // well: the environment's diffuse light goes by the very formula that it came in by.
+      if (shading.light instanceof GridLight) return iblIrradiance.negate();
       return this.#irradiance(shading, builder).div(ambientOcclusion.max(LEAST_OCCLUSION)).sub(iblIrradiance);
     })() as Vec3Node;
   }
@@ -72,6 +73,7 @@ export class WebGPUPainter implements Painter {
 
   #unscaled({ light, direct }: Shading, inputs: Partial<Inputs<Node>>): Vec3Node {
     if (!light) return vec3(0);
+    if (light instanceof GridLight) return ownIrradiance(light);
     if (!(light instanceof ScreenLight)) return lightNode(light, inputs);
     const { rgb } = this.#screenNode(light).sample(screenUV) as Node<"vec4">;
     return direct ? rgb.add(lightNode(direct, inputs)) : rgb;
@@ -86,9 +88,9 @@ export class WebGPUPainter implements Painter {
     if (view === "irradiance") return this.#irradiance(shading, builder).div(Math.PI) as Vec3Node;
     const common = commonView(view, builder, lightmap);
     if (common) return common;
-    const hasView = light && !(light instanceof ScreenLight) && light.views[view as LightView];
+    const hasView = light && "views" in light && light.views[view as LightView];
     if (!hasView) return MISSING_VIEW;
-    return lightNode(light as LightShader, inputsOf(builder, lightmap !== undefined), view as LightView);
+    return lightNode(light, inputsOf(builder, lightmap !== undefined), view as LightView);
   }
 
   #screenNode(screen: ScreenLight): TextureNode {

@@ -2,6 +2,10 @@
 import type { Probes } from "@irradia/runtime";
 import type { Object3D } from "three";
 import { LightProbeGrid } from "three/addons/lighting/LightProbeGrid.js";
+import { lightProbeGridIrradiance } from "three/addons/tsl/lighting/LightProbeGridNode.js";
+import { normalWorld, positionWorld } from "three/tsl";
+import type { Node } from "three/webgpu";
+import type { GridLight } from "../core/painter.js";
 import { probeAtlas } from "../core/probe-atlas.js";
 
 export function probeGrid(probes: Probes): Object3D {
@@ -11,4 +15,9 @@ export function probeGrid(probes: Probes): Object3D {
   grid.updateBoundingBox();
   grid.texture = texture;
   return grid;
+}
+
+/** What such a grid adds, for views. */
+export function ownIrradiance({ grid }: GridLight): Node<"vec3"> {
+  return lightProbeGridIrradiance(grid as LightProbeGrid, positionWorld, normalWorld);
 }

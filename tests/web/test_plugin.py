@@ -1,0 +1,246 @@
+"""@irradia/three lights a scene in Chromium: the same laws on three.js' three backends."""
+
+from __future__ import annotations
+
+import base64
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from .court import PANE_M, court, write_court
+from .pixels import BACKENDS, view_of
+
+WIDTH_PX, HEIGHT_PX = 96, 64
+CLOSE = 1e-5  # sums and products in another order
+FILES: dict[str, dict[str, Any]] = {
+    "plain": {},
+    "instanced": {"instanced": True},
+    "live": {"torch": "realtime"},
+    "direct": {"direct": True},
+}
+BALL = {"centre": [0.0, 0.9, 0.4], "radius": 0.3, "isLit": True}  # against the void
+# By name: file, plugins, and by name the steps before each picture.
+JOBS: dict[str, tuple[str, str, dict[str, dict[str, Any]]]] = {
+    "plain": (
+        "plain",
+        "irradia",
+        {
+            "lightmap": {"use": "lightmap"},
+            "irradiance": {"view": "irradiance"},
+            "albedo": {"view": "albedo"},
+            "field": {"view": None, "use": "field"},
+            "probes": {"use": "probes"},
+            "again": {"use": "lightmap"},
+            "bright": {"intensity": 2},
+            "occluded": {"intensity": 1, "occlusion": 0.25},
+            "surrounded": {"occlusion": 1, "surroundings": 0.5},
+            "black paint": {"black": True},
+        },
+    ),
+    "both": ("plain", "both", {"lightmap": {}}),
+    "instanced": (
+        "instanced",
+        "irradia",
+        {"lightmap": {}, "field": {"use": "field"}, "probes": {"use": "probes"}},
+    ),
+    "live": (
+        "live",
+        "irradia",
+        {"lightmap": {}, "none": {"use": "none"}, "field": {"use": "field"}, "probes": {"use": "probes"}},
+    ),
+    "direct": ("direct", "irradia", {"irradiance": {"view": "irradiance", "use": "field"}}),
+    "without map": ("plain", "irradia", {"irradiance": {"view": "irradiance", "use": "field"}}),
+    "ball": (
+        "plain",
+        "irradia",
+        {
+            "void": {},
+            "lit": {"ball": BALL},
+            "by probes": {"dynamicSource": "probes"},
+            "unlit": {"dynamicSource": None},
+            "disposed": {"dispose": True},
+        },
+    ),
+    "damaged": ("damaged", "irradia", {}),
+}
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A drawing: (H, W, 3) linear, row 0 the top, and what the light said of itself."""
+
+    pixels: NDArray[np.float32]
+    told: dict[str, Any]
+
+
+@pytest.fixture(scope="session")
+def files(tmp_path_factory) -> dict[str, Path]:
+    """Courts by name."""
+    folder = tmp_path_factory.mktemp("courts")
+    paths = {name: folder / f"{name}.glb" for name in (*FILES, "damaged")}
+    for name, kind in FILES.items():
+        write_court(paths[name], **kind)
+    whole = paths["plain"].read_bytes()
+    assert b'"page":1' in whole
+    paths["damaged"].write_bytes(whole.replace(b'"page":1', b'"page":7', 1))
+    return paths
+
+
+@pytest.fixture(scope="session", params=BACKENDS)
+def reports(web_check, chromium: str, files: dict[str, Path], tmp_path_factory, request) -> dict[str, Any]:
+    """What the page answers to all jobs on one backend."""
+    view = view_of(court(instanced=False, torch="baked").cameras[0], WIDTH_PX, HEIGHT_PX)
+    asked = [
+        {"backend": request.param, "scene": f"/{file}.glb", "view": view, "plugins": plugins}
+        | {"steps": list(steps.values())}
+        for file, plugins, steps in JOBS.values()
+    ]
+    jobs = tmp_path_factory.mktemp("jobs") / "jobs.json"
+    jobs.write_text(json.dumps(asked))
+    served = [f"/{name}.glb={path}" for name, path in files.items()]
+    found = dict(zip(JOBS, web_check("plugin", jobs, chromium, *served), strict=True))
+    assert {report["backend"] for report in found.values()} == {request.param}
+    return found
+
+
+@pytest.fixture
+def shots(reports: dict[str, Any]) -> dict[str, dict[str, Shot]]:
+    """By job, by step."""
+    return {
+        job: dict(zip(JOBS[job][2], map(shot_of, report["shots"]), strict=True))
+        for job, report in reports.items()
+        if "refusal" not in report
+    }
+
+
+def shot_of(told: dict[str, Any]) -> Shot:
+    rgba = np.frombuffer(base64.b64decode(told["picture"]), "<f4").reshape(HEIGHT_PX, WIDTH_PX, 4)
+    return Shot(rgba[..., :3], told)
+
+
+def opaque() -> NDArray[np.bool_]:
+    """(H, W) pixels that don't show the pane."""
+    camera = court(instanced=False, torch="baked").cameras[0]
+    corners = np.concatenate([PANE_M, np.ones((4, 1))], axis=1) @ np.linalg.inv(camera.world_from_camera).T
+    assert camera.yfov_rad is not None
+    scale = 0.5 * HEIGHT_PX / np.tan(0.5 * camera.yfov_rad)
+    columns = 0.5 * WIDTH_PX + scale * corners[:, 0] / -corners[:, 2]
+    rows = 0.5 * HEIGHT_PX - scale * corners[:, 1] / -corners[:, 2]
+    row, column = np.mgrid[:HEIGHT_PX, :WIDTH_PX] + 0.5
+    margin = 2
+    is_beside = (column < columns.min() - margin) | (column > columns.max() + margin)
+    return is_beside | (row < rows.min() - margin) | (row > rows.max() + margin)
+
+
+def matte(albedo: Shot) -> NDArray[np.bool_]:
+    """(H, W) pixels of the floor, the only grey thing."""
+    return (albedo.pixels > 0.7).all(axis=-1) & opaque()
+
+
+def test_a_file_has_the_sources_that_were_put_in(reports) -> None:
+    names = ["lightmap", "field", "probes", "three-probes", "none"]
+    found = reports["plain"]["sources"]
+    assert [source["name"] for source in found] == names
+    assert [source["quantity"] for source in found][:3] == ["full", "indirect", "full"]
+    assert [source["name"] for source in found if source["isDynamic"]] == ["field", "probes"]
+
+
+def test_matte_paint_shows_its_colour_times_its_irradiance_over_pi(shots) -> None:
+    plain = shots["plain"]
+    floor = matte(plain["albedo"])
+    assert floor.sum() > 1000
+    expected = plain["albedo"].pixels * plain["irradiance"].pixels
+    np.testing.assert_allclose(plain["lightmap"].pixels[floor], expected[floor], atol=CLOSE)
+
+
+def test_coming_back_to_a_source_gives_its_picture_and_makes_nothing_new(shots) -> None:
+    plain = shots["plain"]
+    np.testing.assert_array_equal(plain["again"].pixels, plain["lightmap"].pixels)
+    assert np.abs(plain["probes"].pixels - plain["lightmap"].pixels).max() > 0.1
+    for what in ("nMaterials", "nPrograms", "bytes"):
+        assert plain["again"].told[what] == plain["probes"].told[what]
+
+
+def test_intensity_is_a_factor(shots) -> None:
+    plain = shots["plain"]
+    where = opaque()
+    np.testing.assert_allclose(plain["bright"].pixels[where], 2 * plain["lightmap"].pixels[where], atol=CLOSE)
+
+
+def test_occlusion_maps_take_nothing_from_light_that_holds_occlusion(shots) -> None:
+    where = opaque()
+    plain = shots["plain"]
+    np.testing.assert_allclose(plain["occluded"].pixels[where], plain["lightmap"].pixels[where], atol=CLOSE)
+
+
+def test_of_the_surroundings_only_reflections_are_added(shots) -> None:
+    plain, where = shots["plain"], opaque()
+    reflections = plain["black paint"].pixels
+    expected = plain["lightmap"].pixels + reflections
+    np.testing.assert_allclose(plain["surrounded"].pixels[where], expected[where], atol=2 * CLOSE)
+    floor = matte(plain["albedo"])
+    assert reflections[floor].max() < CLOSE
+    assert reflections[where].max() > 0.01  # on the glossy cubes
+
+
+def test_another_plugin_for_lightmaps_adds_no_light(shots) -> None:
+    np.testing.assert_array_equal(shots["both"]["lightmap"].pixels, shots["plain"]["lightmap"].pixels)
+
+
+@pytest.mark.parametrize("source", ["lightmap", "field", "probes"])
+def test_instances_are_lit_like_nodes(shots, source: str) -> None:
+    difference = np.abs(shots["instanced"][source].pixels - shots["plain"][source].pixels)
+    assert difference.max() < CLOSE
+
+
+def test_lights_that_stay_live_shine_on_top_of_the_lightmap(shots) -> None:
+    where, live = opaque(), shots["live"]
+    shine = live["lightmap"].pixels - shots["plain"]["lightmap"].pixels
+    np.testing.assert_allclose(shine[where], live["none"].pixels[where], atol=CLOSE)
+    assert shine[where].max() > 0.1
+    assert [live[name].told["shining"] for name in ("lightmap", "none")] == [[True, False]] * 2
+
+
+def test_each_light_shines_only_where_its_first_bounce_is_missing(shots) -> None:
+    told = {
+        (job, name): (shot.told["directFrom"], sum(shot.told["shining"]))
+        for job, steps in shots.items()
+        for name, shot in steps.items()
+    }
+    assert told["plain", "lightmap"] == ("source", 0)
+    assert told["plain", "field"] == ("lights", 2)
+    assert told["live", "field"] == ("lights", 2)
+    assert told["live", "probes"] == ("source", 0)  # of all light
+    assert told["direct", "irradiance"] == ("map", 0)
+
+
+def test_a_map_of_direct_light_is_added_to_a_field_of_indirect_light(shots, reports) -> None:
+    added = shots["direct"]["irradiance"].pixels - shots["without map"]["irradiance"].pixels
+    hit = matte(shots["plain"]["albedo"])
+    assert added[hit].min() > 0.19  # the map goes from 0.2 to 0.6
+    assert added[hit].max() < 0.61
+    assert np.ptp(added[hit]) > 0.2
+
+
+def test_what_moves_is_lit_by_the_dynamic_source(shots) -> None:
+    void, lit, by_probes, unlit = (
+        shots["ball"][name].pixels for name in JOBS["ball"][2] if name != "disposed"
+    )
+    ball = (void.max(axis=-1) == 0.0) & (lit.min(axis=-1) > 0.05)
+    assert ball.sum() > 50
+    assert by_probes[ball].min() > 0.05
+    assert np.abs(lit - by_probes)[ball].max() > 0.01
+    assert unlit[ball].max() == 0.0
+
+
+def test_disposing_of_the_light_leaves_the_scene_as_it_came(shots) -> None:
+    assert shots["ball"]["disposed"].pixels.max() == 0.0
+
+
+def test_damage_is_refused_with_its_place(reports) -> None:
+    assert "/extensions/IRRADIA_lighting/primitives/0/page" in reports["damaged"]["refusal"]
