@@ -21,7 +21,7 @@ SECTIONS = {
     "Beside it": ("--baselines",),
     "The scene": (
         *("--scene", "--env", "--env-rotation", "--env-strength", "--env-color", "--sky"),
-        *("--no-default-light", "--ies", "--material-override", "--variant", "--pose-time"),
+        *("--no-default-light", "--ies", "--material-override", "--variant", "--pose-time", "--force"),
     ),
     "Machine": ("--seed", "--device", "--threads"),
 }
@@ -116,6 +116,7 @@ class Names(click.ParamType):
 @options.lighting_options
 @options.scene_options
 @options.override_options
+@click.option("--force", is_flag=True, help="Judge a field that was trained in another scene or light too.")
 @options.seed_option
 @options.device_option
 @options.threads_option
@@ -156,6 +157,7 @@ def _job(
     seed: int,
     device: str,
     threads: int | None,
+    force: bool,
     **light: Any,
 ) -> Any:
     from irradia.cli.eval_options import EvalJob, PictureOptions, SpaceOptions
@@ -175,6 +177,7 @@ def _job(
         seed=seed,
         device=device,  # type: ignore[arg-type]
         threads=threads,
+        force=force,
     )
 
 

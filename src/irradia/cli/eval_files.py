@@ -12,6 +12,7 @@ import numpy as np
 from irradia.cli.eval_job import Evaluation, Judged, View
 from irradia.cli.eval_options import EvalJob
 from irradia.cli.memory import peak_memory_bytes
+from irradia.cli.origin import scene_inputs
 from irradia.core import provenance
 from irradia.core.colour import automatic_exposure_ev, picture_srgb8
 from irradia.core.files import write_text_atomic
@@ -45,8 +46,9 @@ def write_evaluation_files(
             _write_pictures(folder, job, found, number)
         pictures = [reference.mean for reference in found.references]
         views = write_views(folder, found.cameras, pictures, job.pictures.reference_spp)
-    record = evaluation_record(job, found, progress, time.perf_counter() - start) | {KEY: views}
     notes = tuple(_notes(found))
+    record = evaluation_record(job, found, progress, time.perf_counter() - start)
+    record |= {"notes": list(notes), KEY: views}
     data = EvaluationData(
         found.scene.name, summary(job, found), record["stage_s"], record["provenance"], notes
     )
@@ -64,7 +66,10 @@ def evaluation_record(job: EvalJob, found: Evaluation, progress: Progress, wall_
         "eval",
         job.config(),
         seed=job.seed,
-        inputs={job.weights.name: provenance.sha256_file(job.weights)},
+        inputs={
+            job.weights.name: provenance.sha256_file(job.weights),
+            **scene_inputs(job, found.scene),
+        },
         device=device,
         wall_s=wall_s,
     )
@@ -186,15 +191,18 @@ def rival_record(rival: Judged) -> dict[str, Any]:
 
 
 def _notes(found: Evaluation) -> list[str]:
-    """That a reference is too noisy, where it is."""
+    """What makes figures doubtful, and that a reference is too noisy, where it is."""
     views = zip(found.cameras, found.rivals[0].views, strict=True)
     hidden = [
         camera.name or f"camera {i}" for i, (camera, view) in enumerate(views) if view.scores.flip.is_noise
     ]
     if not hidden:
-        return []
+        return list(found.remarks)
     names = ", ".join(hidden)
-    return [f"The reference's own noise hides HDR-FLIP in {names}; more samples per pixel would show it."]
+    return [
+        *found.remarks,
+        f"The reference's own noise hides HDR-FLIP in {names}; more samples per pixel would show it.",
+    ]
 
 
 def _write_pictures(folder: Path, job: EvalJob, found: Evaluation, number: int) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -79,6 +79,7 @@ class Evaluation:
         cameras, references: What pictures were compared with.
         rivals: The field first.
         queries_per_second: Of the field, on this machine.
+        remarks: What makes its figures doubtful.
     """
 
     scene: Scene
@@ -87,6 +88,7 @@ class Evaluation:
     references: tuple[Reference, ...]
     rivals: tuple[Judged, ...]
     queries_per_second: float
+    remarks: tuple[str, ...] = ()
 
 
 def run_eval(job: EvalJob, progress: Progress) -> dict[str, Any]:
@@ -108,8 +110,11 @@ def run_eval(job: EvalJob, progress: Progress) -> dict[str, Any]:
         stored = read_field(job.weights)
         scene = open_scene(job.scene, job.load, job.light, progress, overrides=job.overrides, ies=job.ies)
         _check_box(stored.field, scene)
+        remarks = tuple(_check_origin(job, stored, scene))
+        for remark in remarks:
+            progress.say(f"note: {remark}")
         scene = in_quantity(scene, stored.field.frame.quantity)
-        found = evaluate(job, scene, stored, progress)
+        found = replace(evaluate(job, scene, stored, progress), remarks=remarks)
         return write_evaluation_files(folder, job, found, progress, start)
 
 
@@ -242,3 +247,30 @@ def _check_box(field: Field, scene: Scene) -> None:
             where="--scene",
             fix="Give the scene that its samples were drawn from.",
         )
+
+
+def _check_origin(job: EvalJob, stored: StoredField, scene: Scene) -> Iterator[str]:
+    """Refuses a field, or samples to judge it by, of another scene or light; with ``force`` remarks on it.
+
+    Raises:
+        InputError: It says what differs from what ``job`` asks for.
+    """
+    from irradia.cli.origin import scene_origin
+    from irradia.formats.sample_origin import difference
+    from irradia.formats.samples import open_samples
+
+    here = scene_origin(job, scene)
+    origins = {"this field was trained in": ("WEIGHTS", stored.provenance.get("samples"))}
+    if job.space.samples is not None:
+        samples = open_samples(job.space.samples, job.space.bin_samples)
+        origins["these samples are of"] = ("--samples", samples.info.provenance)
+    for what, (where, origin) in origins.items():
+        problem = difference(here, origin)
+        if problem and not job.force:
+            raise InputError(
+                f"{what} another scene or light: {problem}",
+                where=where,
+                fix="Give --scene and its light as they were sampled, or --force to judge it all the same.",
+            )
+        if problem:
+            yield f"{what} another scene or light: {problem}"

@@ -8,6 +8,7 @@ from typing import Any
 
 from irradia.cli.eval import BASELINES
 from irradia.cli.lighting import LightOptions
+from irradia.cli.origin import scene_config
 from irradia.core.device import DeviceChoice
 from irradia.core.errors import InputError
 from irradia.formats.samples_bin import BinOptions
@@ -72,6 +73,7 @@ class EvalJob:
         out: Folder for the results.
         overrides, ies: As in :class:`irradia.cli.bake_job.BakeJob`.
         baselines: Names of BASELINES.
+        force: Judges a field also where it was trained in another scene or light.
         seed: Root of all random numbers.
     """
 
@@ -88,12 +90,12 @@ class EvalJob:
     seed: int = 0
     device: DeviceChoice = "auto"
     threads: int | None = None
+    force: bool = False
 
     def config(self) -> dict[str, Any]:
         """Every choice as plain values; files by their names, since folders differ between machines."""
-        plain = asdict(self)
+        plain = asdict(self) | scene_config(self)
         del plain["out"]
-        plain["weights"], plain["scene"] = self.weights.name, Path(self.scene).name
-        plain["light"]["env"] = self.light.env.name if self.light.env else None
+        plain["weights"] = self.weights.name
         plain["space"]["samples"] = self.space.samples.name if self.space.samples else None
         return plain

@@ -190,7 +190,28 @@ def _made(
         raise InputError(
             f"expected samples of {ours} light as the field holds, found {theirs}", where="--samples"
         )
+    _check_scene(stored, samples)
     return finish(stored.field, bits, samples, FinishOptions(seed=job.seed), progress=progress)
+
+
+def _check_scene(stored: StoredField, samples: SampleFile) -> None:
+    """Refuses samples of another scene or light than the field's.
+
+    Raises:
+        InputError: It says what differs.
+    """
+    from irradia.formats.sample_origin import difference
+
+    problem = difference(stored.provenance.get("samples"), samples.info.provenance)
+    low, high = stored.field.frame.aabb
+    if not problem and ((samples.aabb[0] > high) | (samples.aabb[1] < low)).any():
+        problem = "their boxes don't meet"
+    if problem:
+        raise InputError(
+            f"these samples are of another scene or light than the field's: {problem}",
+            where="--samples",
+            fix="Give those that it was trained from, or ones of the same scene and light.",
+        )
 
 
 def _about(job: ExportJob, stored: StoredField, found: Calibration | None) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from threading import Event
@@ -72,6 +73,7 @@ def field_of_bake(
     view: View,
     views: ViewOptions,
     options: FieldOptions,
+    origin: Mapping[str, Any],
     progress: Progress,
 ) -> FinishedField:
     """Makes a field from a bake's lightmap, and judges it by the references of the bake's report.
@@ -82,6 +84,7 @@ def field_of_bake(
         view: The bake's.
         views: How that was rendered.
         options: How to make the field.
+        origin: Of the scene; see :func:`irradia.cli.origin.scene_origin`.
         progress: Shows stages.
     """
     from irradia.bake.datasets.setting import in_quantity
@@ -91,7 +94,7 @@ def field_of_bake(
     from irradia.field.native_fields import decode_field, encode_field
 
     made = make_field(scene, lightmap, options, progress)
-    data = encode_field(made, {"field": asdict(options)}, compress=True)
+    data = encode_field(made, {"field": asdict(options), "samples": dict(origin)}, compress=True)
     pictures = PictureOptions(reference_spp=views.reference_spp, n_pixels=views.n_pixels)
     job = EvalJob(
         Path(FILE), scene.name, Path(), pictures=pictures, space=_SPACE, baselines=(), seed=options.seed

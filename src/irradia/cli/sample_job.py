@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from irradia.bake.datasets.options import SampleOptions
 from irradia.cli.lighting import LightOptions
+from irradia.cli.origin import scene_config, scene_inputs
 from irradia.core import provenance
 from irradia.core.device import DeviceChoice
 from irradia.core.errors import InputError
@@ -73,9 +74,7 @@ class SampleJob:
 
     def config(self) -> dict[str, Any]:
         """Every choice as plain values; files by their names, since folders differ between machines."""
-        plain = asdict(self)
-        plain["scene"] = Path(self.scene).name
-        plain["light"]["env"] = self.light.env.name if self.light.env else None
+        plain = asdict(self) | scene_config(self)
         plain["lightmap"] = self.lightmap.name if self.lightmap else None
         del plain["out"]
         return plain
@@ -187,12 +186,10 @@ def write_datasets(
 def open_lit_scene(job: SampleJob, progress: Progress) -> tuple[Scene, BakedPages | None, dict[str, str]]:
     """The scene, the lightmap that its rays read, and the hashes of what both come from."""
     from irradia.bake.datasets.light import bake_all_light
-    from irradia.cli.bake_job import open_scene, scene_hash
+    from irradia.cli.bake_job import open_scene
 
     scene = open_scene(job.scene, job.load, job.light, progress, overrides=job.overrides, ies=job.ies)
-    inputs = {Path(job.scene).name: scene_hash(scene)}
-    if job.light.env is not None:
-        inputs[job.light.env.name] = provenance.sha256_file(job.light.env)
+    inputs = scene_inputs(job, scene)
     if job.options.integrator == "path":
         return scene, None, inputs
     if job.lightmap is None:
@@ -206,7 +203,7 @@ def open_lit_scene(job: SampleJob, progress: Progress) -> tuple[Scene, BakedPage
     scene, lightmap, path = read_all_light(job.lightmap, scene, job.load)
     if job.overrides:  # the baked file has the materials as they were
         scene = override_materials(scene, read_material_overrides(job.overrides))
-    return scene, lightmap, inputs | {path.name: provenance.sha256_file(path)}
+    return scene, lightmap, inputs | {f"lightmap {path.name}": provenance.sha256_file(path)}
 
 
 def _write(

@@ -66,6 +66,7 @@ class TrainJob:
         plain = asdict(self)
         plain["options"] = self.options.identity()
         plain["choices"]["spec_file"] = self.choices.spec_file.name if self.choices.spec_file else None
+        plain["jitter_scene"] = None if self.jitter_scene is None else Path(self.jitter_scene).name
         for name in ("data", "out", "follow", "resume", "validation"):
             del plain[name]
         return plain
