@@ -2,12 +2,18 @@
 import type { ShaderLanguage } from "./light-shader.js";
 import { PIECES } from "./pieces.js";
 
+/**
+ * Languages that pieces exist in. Those of the web are bundled; tools that compose others put the texts of
+ * `shaders/hlsl/` or `shaders/msl/` into `PIECES` first.
+ */
+export type PieceLanguage = ShaderLanguage | "hlsl" | "msl";
+
 /** One file of `shaders/wgsl/`, as the generator leaves it for us. */
-export interface ShaderPiece {
+export interface ShaderPiece extends Readonly<Record<ShaderLanguage, string>> {
   /** Pieces that must come before; a name without a piece is a choice among `NAME-…`. */
   readonly needs: readonly string[];
-  readonly wgsl: string;
-  readonly glsl: string;
+  readonly hlsl?: string;
+  readonly msl?: string;
 }
 
 /** Which piece stands for a choice: `{ width: "width-64" }`. */
@@ -27,13 +33,15 @@ export type ShaderPart = string | PiecePick | { readonly text: string };
 const TABLE = /\birradia_table/g;
 
 /** The text of all parts: functions, constants and private variables. A string is a piece without choices. */
-export function composeText(language: ShaderLanguage, parts: readonly ShaderPart[]): string {
+export function composeText(language: PieceLanguage, parts: readonly ShaderPart[]): string {
   const texts = new Map<string, string>();
   const add = (name: string, pick: PiecePick): void => {
     const piece = PIECES[pick.choices?.[name] ?? name];
     if (!piece) throw new Error(`no shader piece is called ${name}, and nothing was chosen for it`);
     for (const need of piece.needs) add(need, pick);
-    const text = inTable(piece[language], pick.table ?? "");
+    const own = piece[language];
+    if (own === undefined) throw new Error(`the piece ${name} has no text in ${language}`);
+    const text = inTable(own, pick.table ?? "");
     texts.set(text, text);
   };
   for (const part of parts) {

@@ -7,16 +7,16 @@ import { type FieldTextures, paddedWidth, placeOf, planFieldTextures } from "../
 import { type EncodingLeaf, encodingLeaves } from "../gpu/leaves.js";
 import { packField, wordsPerTexel } from "../gpu/pack.js";
 import type { TextureLimits } from "../gpu/texture.js";
-import { composeText, type PieceChoices, type ShaderPart } from "./compose.js";
-import type {
-  LightShader,
-  ShaderCost,
-  ShaderLanguage,
-  ShaderTexture,
-  ShaderUniforms,
-} from "./light-shader.js";
+import { composeText, type PieceChoices, type PieceLanguage, type ShaderPart } from "./compose.js";
+import type { LightShader, ShaderCost, ShaderTexture, ShaderUniforms } from "./light-shader.js";
 
 const CONSTANTS = "irradia_constants";
+const ENCODE: Readonly<Record<PieceLanguage, string>> = {
+  wgsl: "fn irradia_encode(unit: vec3f, normal: vec3f)",
+  glsl: "void irradia_encode(vec3 unit, vec3 normal)",
+  hlsl: "void irradia_encode(float3 unit, float3 normal)",
+  msl: "void irradia_encode(metal::float3 unit, metal::float3 normal)",
+};
 /** Fragment shaders have 16 textures on every device, and engines use some. */
 const MAX_TABLES = 8;
 
@@ -73,7 +73,7 @@ function tableSuffix(index: number): string {
   return index ? `_${String.fromCharCode("a".charCodeAt(0) + index)}` : "";
 }
 
-function textOf(field: Field, plan: FieldTextures, language: ShaderLanguage): string {
+function textOf(field: Field, plan: FieldTextures, language: PieceLanguage): string {
   const { spec } = field;
   const common: PieceChoices = {
     constants: plan.constants.texture ? "constants-texture" : "constants-uniform",
@@ -102,7 +102,7 @@ function textOf(field: Field, plan: FieldTextures, language: ShaderLanguage): st
 function encodeFunction(
   leaves: readonly EncodingLeaf[],
   plan: FieldTextures,
-  language: ShaderLanguage,
+  language: PieceLanguage,
 ): string {
   const calls = leaves.map((leaf, i) => {
     const shader = encodingShader(leaf.encoding);
@@ -110,11 +110,7 @@ function encodeFunction(
     const name = shader.function.replace("irradia_table", `irradia_table${tableSuffix(Math.max(table, 0))}`);
     return `${name}(${plan.constants.records[i]}u, ${argumentOf(leaf)});`;
   });
-  const signature = {
-    wgsl: "fn irradia_encode(unit: vec3f, normal: vec3f)",
-    glsl: "void irradia_encode(vec3 unit, vec3 normal)",
-  } as const;
-  return `${signature[language]} {\n${calls.join("\n")}\n}`;
+  return `${ENCODE[language]} {\n${calls.join("\n")}\n}`;
 }
 
 function argumentOf({ input, isCube }: EncodingLeaf): string {
