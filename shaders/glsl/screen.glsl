@@ -1,24 +1,26 @@
 // Generated from shaders/wgsl/screen.wgsl by `npm run shaders` in web/: don't edit.
-// given, in WGSL: var irradia_screen_surface: texture_2d<f32>
+// needs: screen-surface
+// given, in WGSL: var irradia_screen_prepass: texture_2d<f32>
 // given, in WGSL: var<uniform> irradia_screen_view: array<vec4f>
-// given, in WGSL: fn irradia_light(position: vec3f, normal: vec3f) -> vec3f
+// given, in WGSL: fn irradia_screen_light(position: vec3f, normal: vec3f, surface_normal: vec3f) -> vec3f
 
-vec4 irradia_screen_seen(uvec2 pixel) {
-    vec4 _e3 = texelFetch(irradia_screen_surface, ivec2(pixel), 0);
-    return _e3;
+irradia_screen_Surface irradia_screen_seen(uvec2 pixel) {
+    vec4 _e3 = texelFetch(irradia_screen_prepass, ivec2(pixel), 0);
+    irradia_screen_Surface _e4 = irradia_screen_unpacked(_e3);
+    return _e4;
 }
 
-vec3 irradia_screen_place(uvec2 pixel, float distance_) {
+vec3 irradia_screen_place(uvec2 pixel, float depth) {
     vec4 _e4 = irradia_screen_view[0];
     vec4 _e9 = irradia_screen_view[0];
     vec2 slope = (_e4.xy + (vec2(pixel) * _e9.zw));
     float _e16 = irradia_screen_view[1].x;
-    vec2 across = (slope * mix(distance_, 1.0, _e16));
+    vec2 across = (slope * mix(depth, 1.0, _e16));
     vec4 _e22 = irradia_screen_view[2];
     vec4 _e28 = irradia_screen_view[3];
     vec4 _e35 = irradia_screen_view[4];
     vec4 _e41 = irradia_screen_view[5];
-    return ((((_e22.xyz * across.x) + (_e28.xyz * across.y)) - (_e35.xyz * distance_)) + _e41.xyz);
+    return ((((_e22.xyz * across.x) + (_e28.xyz * across.y)) - (_e35.xyz * depth)) + _e41.xyz);
 }
 
 uvec2 irradia_screen_sample(uvec2 cell) {
@@ -27,11 +29,11 @@ uvec2 irradia_screen_sample(uvec2 cell) {
 }
 
 vec3 irradia_screen_irradiance(uvec2 pixel) {
-    vec4 _e1 = irradia_screen_seen(pixel);
-    if ((_e1.w <= 0.0)) {
+    irradia_screen_Surface _e1 = irradia_screen_seen(pixel);
+    if ((_e1.depth <= 0.0)) {
         return vec3(0.0);
     }
-    vec3 _e8 = irradia_screen_place(pixel, _e1.w);
-    vec3 _e11 = irradia_light(_e8, normalize(_e1.xyz));
+    vec3 _e8 = irradia_screen_place(pixel, _e1.depth);
+    vec3 _e11 = irradia_screen_light(_e8, _e1.normal, _e1.surface_normal);
     return _e11;
 }

@@ -1,29 +1,31 @@
 // Generated from shaders/wgsl/screen.wgsl by `npm run shaders` in web/: don't edit.
-// given, in WGSL: var irradia_screen_surface: texture_2d<f32>
+// needs: screen-surface
+// given, in WGSL: var irradia_screen_prepass: texture_2d<f32>
 // given, in WGSL: var<uniform> irradia_screen_view: array<vec4f>
-// given, in WGSL: fn irradia_light(position: vec3f, normal: vec3f) -> vec3f
+// given, in WGSL: fn irradia_screen_light(position: vec3f, normal: vec3f, surface_normal: vec3f) -> vec3f
 
-metal::float4 irradia_screen_seen(
+irradia_screen_Surface irradia_screen_seen(
     metal::uint2 pixel
 ) {
-    metal::float4 _e3 = irradia_screen_surface.read(metal::uint2(pixel), 0);
-    return _e3;
+    metal::float4 _e3 = irradia_screen_prepass.read(metal::uint2(pixel), 0);
+    irradia_screen_Surface _e4 = irradia_screen_unpacked(_e3);
+    return _e4;
 }
 
 metal::float3 irradia_screen_place(
     metal::uint2 pixel,
-    float distance
+    float depth
 ) {
     metal::float4 _e4 = irradia_screen_view[0];
     metal::float4 _e9 = irradia_screen_view[0];
     metal::float2 slope = _e4.xy + (static_cast<metal::float2>(pixel) * _e9.zw);
     float _e16 = irradia_screen_view[1].x;
-    metal::float2 across = slope * metal::mix(distance, 1.0, _e16);
+    metal::float2 across = slope * metal::mix(depth, 1.0, _e16);
     metal::float4 _e22 = irradia_screen_view[2];
     metal::float4 _e28 = irradia_screen_view[3];
     metal::float4 _e35 = irradia_screen_view[4];
     metal::float4 _e41 = irradia_screen_view[5];
-    return (((_e22.xyz * across.x) + (_e28.xyz * across.y)) - (_e35.xyz * distance)) + _e41.xyz;
+    return (((_e22.xyz * across.x) + (_e28.xyz * across.y)) - (_e35.xyz * depth)) + _e41.xyz;
 }
 
 metal::uint2 irradia_screen_sample(
@@ -36,11 +38,11 @@ metal::uint2 irradia_screen_sample(
 metal::float3 irradia_screen_irradiance(
     metal::uint2 pixel
 ) {
-    metal::float4 _e1 = irradia_screen_seen(pixel);
-    if (_e1.w <= 0.0) {
+    irradia_screen_Surface _e1 = irradia_screen_seen(pixel);
+    if (_e1.depth <= 0.0) {
         return metal::float3(0.0);
     }
-    metal::float3 _e8 = irradia_screen_place(pixel, _e1.w);
-    metal::float3 _e11 = irradia_light(_e8, metal::normalize(_e1.xyz));
+    metal::float3 _e8 = irradia_screen_place(pixel, _e1.depth);
+    metal::float3 _e11 = irradia_screen_light(_e8, _e1.normal, _e1.surface_normal);
     return _e11;
 }

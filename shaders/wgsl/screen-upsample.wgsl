@@ -14,22 +14,21 @@ const irradia_screen_least: f32 = 0.25; // of a neighbourhood that counts in ful
 // How much a neighbour counts at a place whose normal is known.
 fn irradia_screen_kinship(place: vec3f, normal: vec3f, pixel_size: f32, neighbour: vec2u) -> f32 {
     let seen = irradia_screen_seen(neighbour);
-    let way = irradia_screen_place(neighbour, seen.w) - place;
+    let way = irradia_screen_place(neighbour, seen.depth) - place;
     let apart = abs(dot(way, normal)) / (irradia_screen_reach * pixel_size);
-    let turned = (1.0 - dot(normal, seen.xyz)) * irradia_screen_bend;
-    return select(0.0, max(0.0, 1.0 - apart) * max(0.0, 1.0 - turned), seen.w > 0.0);
+    let turned = (1.0 - dot(normal, seen.normal)) * irradia_screen_bend;
+    return select(0.0, max(0.0, 1.0 - apart) * max(0.0, 1.0 - turned), seen.depth > 0.0);
 }
 
 // E of what a pixel shows.
 fn irradia_screen_upsampled(pixel: vec2u) -> vec3f {
     let seen = irradia_screen_seen(pixel);
-    if seen.w <= 0.0 {
+    if seen.depth <= 0.0 {
         return vec3f(0.0);
     }
-    let normal = normalize(seen.xyz);
-    let place = irradia_screen_place(pixel, seen.w);
+    let place = irradia_screen_place(pixel, seen.depth);
     let steps = abs(irradia_screen_view[0].zw);
-    let pixel_size = max(steps.x, steps.y) * mix(seen.w, 1.0, irradia_screen_view[1].x);
+    let pixel_size = max(steps.x, steps.y) * mix(seen.depth, 1.0, irradia_screen_view[1].x);
     let cell = pixel >> vec2u(1u, 1u);
     let share = 0.5 * vec2f(pixel & vec2u(1u, 1u));
     var sum = vec4f(0.0);
@@ -39,12 +38,12 @@ fn irradia_screen_upsampled(pixel: vec2u) -> vec3f {
         let weight = near.x * near.y;
         if weight > 0.0 {
             let neighbour = irradia_screen_sample(cell + corner);
-            let counts = weight * irradia_screen_kinship(place, normal, pixel_size, neighbour);
+            let counts = weight * irradia_screen_kinship(place, seen.normal, pixel_size, neighbour);
             sum += counts * vec4f(textureLoad(irradia_screen_half, cell + corner, 0).rgb, 1.0);
         }
     }
     if sum.w < irradia_screen_least {
-        return irradia_light(place, normal);
+        return irradia_screen_light(place, seen.normal, seen.surface_normal);
     }
     return sum.rgb / sum.w;
 }

@@ -23,8 +23,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.bake.directional_modes import MODES, SurfaceFrame
-from irradia.bake.probes.interpolation import irradiance_at
+from irradia.bake.probes.interpolation import interpolate
 from irradia.core.colour import automatic_exposure_ev, srgb_from_linear
+from irradia.core.sh import irradiance
 from irradia.export.probes_extension import read_baked_probes
 from irradia.export.read_baked import BakedScene, read_baked
 from irradia.field.field import Field
@@ -160,8 +161,9 @@ class BakedReference:
         return np.pi * MODES[found.mode].irradiance_over_pi(plain, maps, pixels.normal, pixels.frame)
 
     def probes(self, pixels: Pixels) -> Image:
-        """Of the probes around, on surfaces."""
-        return irradiance_at(self._probes, pixels.position, pixels.normal)
+        """Of the probes around that see the surface, for the normal that is lit."""
+        series = interpolate(self._probes, pixels.position, pixels.surface_normal)
+        return np.maximum(irradiance(series, pixels.normal), 0.0)
 
     def _texels(self, pages: NDArray[np.float32], pixels: Pixels) -> Image:
         uv, number = pixels.lightmap_rows

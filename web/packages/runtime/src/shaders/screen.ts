@@ -1,6 +1,6 @@
 /** Light evaluated once a pixel, by what a prepass says of the surface there. */
 import { composeText } from "./compose.js";
-import type { ShaderLanguage } from "./light-shader.js";
+import type { LightInput, LightShader, ShaderLanguage } from "./light-shader.js";
 
 /**
  * What a full-screen pass writes: E at each pixel, E at every second pixel of every second row, or E at each
@@ -15,14 +15,40 @@ const CALLS: Readonly<Record<ScreenStage, (pixel: string) => string>> = {
   upsample: (pixel) => `irradia_screen_upsampled(${pixel})`,
 };
 
+/** Inputs that a prepass stores, by the names of their parameters. */
+const STORED: Readonly<Partial<Record<LightInput, string>>> = {
+  position: "position",
+  normal: "normal",
+  surfaceNormal: "surface_normal",
+};
+
+/** Whether a source can be evaluated from what a prepass stores: no map, no tangents. */
+export function isForScreens({ inputs }: LightShader): boolean {
+  return inputs.every((input) => STORED[input]);
+}
+
 /**
- * Functions of a stage, to be put behind those of a LightShader that takes position and normal alone.
+ * Functions that write what a prepass stores: `irradia_screen_packed(normal, surface_normal, depth) -> vec4`, of
+ * unit vectors in world space and the distance along the view in metres.
+ */
+export function prepassText(language: ShaderLanguage): string {
+  return composeText(language, ["screen-surface"]);
+}
+
+/**
+ * Functions of a stage, to be put behind the text of a source for which `isForScreens`.
  *
- * They read the prepass as `irradia_screen_surface`, light at half resolution as `irradia_screen_half`, and
+ * They read the prepass as `irradia_screen_prepass`, light at half resolution as `irradia_screen_half`, and
  * `screenConstants` as `irradia_screen_view`: two-dimensional textures of floats and an array of six vec4s.
  */
-export function screenText(language: ShaderLanguage, stage: ScreenStage): string {
-  return composeText(language, [stage === "upsample" ? "screen-upsample" : "screen"]);
+export function screenText(language: ShaderLanguage, stage: ScreenStage, light: LightShader): string {
+  const call = `${light.entry}(${light.inputs.map((input) => STORED[input]).join(", ")})`;
+  const names = Object.values(STORED);
+  const wrapper =
+    language === "wgsl"
+      ? `fn irradia_screen_light(${names.map((name) => `${name}: vec3f`).join(", ")}) -> vec3f { return ${call}; }`
+      : `vec3 irradia_screen_light(${names.map((name) => `vec3 ${name}`).join(", ")}) { return ${call}; }`;
+  return composeText(language, [{ text: wrapper }, stage === "upsample" ? "screen-upsample" : "screen"]);
 }
 
 /** The expression of a stage's light at a pixel. */

@@ -1,6 +1,6 @@
 /** Light evaluated once a pixel for the whole screen, before the scene is drawn: what both renderers share. */
 import type { LightShader, ScreenStage } from "@irradia/runtime";
-import { halfSize, screenConstants } from "@irradia/runtime";
+import { halfSize, isForScreens, screenConstants } from "@irradia/runtime";
 import {
   type Camera,
   type Material,
@@ -61,9 +61,6 @@ export function plainCopy(original: Material): Material {
   return copy;
 }
 
-/** Inputs that a pixel's surface has. */
-const OF_PIXELS = new Set(["position", "normal"]);
-
 /** See the renderers' IrradiancePass. */
 export abstract class BaseIrradiancePass<Target extends DrawnTarget> {
   readonly #drawer: PassDrawer<Target>;
@@ -94,12 +91,12 @@ export abstract class BaseIrradiancePass<Target extends DrawnTarget> {
    * Evaluates the light of what the camera sees, and gives it to the scene's materials until the next call. To
    * be called before each frame, with the renderer's target set to what the frame will be drawn to.
    *
-   * @returns whether the pass lights the frame: sources that need more than position and normal, such as
+   * @returns whether the pass lights the frame: sources that need more than position and normals, such as
    *   lightmaps, are left to the materials
    */
   render(scene: Object3D, camera: Camera): boolean {
     const { shader } = this.#light.source;
-    if (!shader?.inputs.every((input) => OF_PIXELS.has(input)) || this.#light.view !== null) {
+    if (!shader || !isForScreens(shader) || this.#light.view !== null) {
       this.#light.screen = null;
       return false;
     }

@@ -1,5 +1,5 @@
 /** Light evaluated once a pixel, for WebGLRenderer. */
-import { type LightShader, type ScreenStage, screenCall, screenText } from "@irradia/runtime";
+import { type LightShader, prepassText, type ScreenStage, screenCall, screenText } from "@irradia/runtime";
 import {
   BufferGeometry,
   Camera,
@@ -56,7 +56,9 @@ const VERTEX = "void main() { gl_Position = vec4(position, 1.0); }";
 
 /** Behind normal maps; what follows is never reached, and compilers leave it out. */
 const SURFACE = `
-gl_FragColor = vec4(normalize((vec4(normal, 0.0) * viewMatrix).xyz), vViewPosition.z);
+mat3 irradiaWorldFromView = transpose(mat3(viewMatrix));
+gl_FragColor = irradia_screen_packed(
+  normalize(irradiaWorldFromView * normal), normalize(irradiaWorldFromView * nonPerturbedNormal), vViewPosition.z);
 return;`;
 
 interface Stage {
@@ -86,8 +88,11 @@ class WebGLPassDrawer implements PassDrawer<WebGLRenderTarget> {
     const copy = plainCopy(original);
     copy.onBeforeCompile = (program, renderer) => {
       original.onBeforeCompile(program, renderer);
-      const chunk = "#include <normal_fragment_maps>";
-      program.fragmentShader = program.fragmentShader.replace(chunk, `${chunk}${SURFACE}`);
+      const insert = (chunk: string, text: string): void => {
+        program.fragmentShader = program.fragmentShader.replace(chunk, `${chunk}\n${text}`);
+      };
+      insert("#include <common>", prepassText("glsl"));
+      insert("#include <normal_fragment_maps>", SURFACE);
     };
     copy.customProgramCacheKey = () => `${original.customProgramCacheKey()}|irradia-surface`;
     return copy;
@@ -155,12 +160,12 @@ class WebGLPassDrawer implements PassDrawer<WebGLRenderTarget> {
 function newStage(name: ScreenStage, light: LightShader): Stage {
   const { text, uniforms } = bindGlsl(light);
   const [surfaces, half, constants] = [emptyUniform(), emptyUniform(), emptyUniform()];
-  const own = { irradia_screen_surface: surfaces, irradia_screen_half: half, irradia_screen_view: constants };
+  const own = { irradia_screen_prepass: surfaces, irradia_screen_half: half, irradia_screen_view: constants };
   const material = new ShaderMaterial({
     glslVersion: GLSL3,
     uniforms: { ...uniforms, ...own },
     vertexShader: VERTEX,
-    fragmentShader: fragment(name, text),
+    fragmentShader: fragment(name, light, text),
     depthTest: false,
     depthWrite: false,
     blending: NoBlending,
@@ -175,13 +180,13 @@ function emptyUniform(): IUniform {
   return { value: null };
 }
 
-function fragment(name: ScreenStage, light: string): string {
+function fragment(name: ScreenStage, light: LightShader, text: string): string {
   return `
-uniform highp sampler2D irradia_screen_surface;
+uniform highp sampler2D irradia_screen_prepass;
 uniform highp sampler2D irradia_screen_half;
 uniform vec4 irradia_screen_view[6];
 layout(location = 0) out highp vec4 irradiance;
-${light}
-${screenText("glsl", name)}
+${text}
+${screenText("glsl", name, light)}
 void main() { irradiance = vec4(${screenCall(name, "uvec2(gl_FragCoord.xy)")}, 1.0); }`;
 }

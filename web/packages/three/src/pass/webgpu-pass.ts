@@ -1,5 +1,5 @@
 /** Light evaluated once a pixel, for WebGPURenderer on either of its backends. */
-import { type LightShader, type ScreenStage, screenCall, screenText } from "@irradia/runtime";
+import { type LightShader, type ScreenStage, screenText } from "@irradia/runtime";
 import {
   type Camera,
   Color,
@@ -11,11 +11,9 @@ import {
   type Texture,
   type Vector2,
 } from "three";
-import { buffer, normalWorld, positionView, texture, vec3, vec4 } from "three/tsl";
+import { buffer, texture, vec3, vec4 } from "three/tsl";
 import {
-  CodeNode,
-  Node,
-  type NodeBuilder,
+  type Node,
   NodeMaterial,
   QuadMesh,
   RenderTarget,
@@ -31,6 +29,7 @@ import {
   plainCopy,
   type StageInputs,
 } from "./irradiance-pass.js";
+import { languageOf, PixelLightNode, surfaceNode, TextNode } from "./nodes.js";
 
 export type { IrradiancePassOptions } from "./irradiance-pass.js";
 
@@ -56,7 +55,7 @@ class WebGPUPassDrawer implements PassDrawer<RenderTarget> {
   }
 
   get isBottomUp(): boolean {
-    return !isWebGPU(this.#renderer);
+    return languageOf(this.#renderer) === "glsl";
   }
 
   sizeTo(size: Vector2): void {
@@ -69,7 +68,7 @@ class WebGPUPassDrawer implements PassDrawer<RenderTarget> {
     const copy = plainCopy(original) as NodeMaterial;
     copy.fog = false;
     copy.lights = false;
-    copy.outputNode = vec4(normalWorld, positionView.z.negate());
+    copy.outputNode = surfaceNode();
     return copy;
   }
 
@@ -126,80 +125,20 @@ class WebGPUPassDrawer implements PassDrawer<RenderTarget> {
 function newStage(name: ScreenStage, light: LightShader, inputs: StageInputs): Stage {
   const surfaces = texture(inputs.surfaces);
   const half = name === "upsample" ? texture(inputs.half as Texture) : undefined;
-  const text = new ScreenTextNode(name, light, surfaces, half, inputs.constants);
+  const bindings = {
+    irradia_screen_prepass: surfaces,
+    irradia_screen_view: buffer(inputs.constants, "vec4", inputs.constants.length / 4),
+    ...(half && { irradia_screen_half: half }),
+  };
+  const anywhere = { position: vec3(0), normal: vec3(0), surfaceNormal: vec3(0) };
+  const text = new TextNode(
+    (language) => screenText(language, name, light),
+    bindings,
+    lightNode(light, anywhere),
+  );
   const material = new NodeMaterial();
-  material.fragmentNode = vec4(new ScreenCallNode(text, name) as unknown as Node<"vec3">, 1);
+  material.fragmentNode = vec4(new PixelLightNode(text, name) as unknown as Node<"vec3">, 1);
   material.depthTest = material.depthWrite = false;
   material.blending = NoBlending;
   return { quad: new QuadMesh(material), surfaces, half };
-}
-
-/** What this module asks of a NodeBuilder; its types say less. */
-type Builder = NodeBuilder & {
-  readonly renderer: WebGPURenderer;
-  getCodeFromNode(node: Node, type: string): { code: string };
-  getFragCoord(): string;
-};
-type Built = Node & { build(builder: NodeBuilder, output?: string): string };
-
-/** Functions of a stage, behind those of the light. */
-class ScreenTextNode extends CodeNode {
-  readonly #name: ScreenStage;
-  readonly #light: Built;
-  readonly #bindings: Readonly<Record<string, Built>>;
-
-  static get type(): string {
-    return "IrradiaScreenTextNode";
-  }
-
-  constructor(
-    name: ScreenStage,
-    light: LightShader,
-    surfaces: TextureNode,
-    half: TextureNode | undefined,
-    constants: Float32Array,
-  ) {
-    super();
-    this.#name = name;
-    this.#light = lightNode(light, { position: vec3(0), normal: vec3(0) }) as unknown as Built;
-    this.#bindings = {
-      irradia_screen_surface: surfaces as unknown as Built,
-      irradia_screen_view: buffer(constants, "vec4", constants.length / 4) as unknown as Built,
-      ...(half && { irradia_screen_half: half as unknown as Built }),
-    };
-  }
-
-  override generate(builder: Builder): string {
-    this.#light.build(builder); // for its text; the call itself is thrown away
-    const text = screenText(isWebGPU(builder.renderer) ? "wgsl" : "glsl", this.#name);
-    const code = Object.entries(this.#bindings).reduce((result, [name, node]) => {
-      return result.replaceAll(new RegExp(`\\b${name}\\b`, "g"), `${node.build(builder, "property")}`);
-    }, text);
-    builder.getCodeFromNode(this, "code").code = code;
-    return code;
-  }
-}
-
-/** E at the pixel that is drawn. */
-class ScreenCallNode extends Node {
-  static get type(): string {
-    return "IrradiaScreenCallNode";
-  }
-
-  constructor(
-    readonly text: ScreenTextNode,
-    readonly stage: ScreenStage,
-  ) {
-    super("vec3");
-  }
-
-  override generate(builder: Builder): string {
-    (this.text as unknown as Built).build(builder, "void");
-    const vector = isWebGPU(builder.renderer) ? "vec2u" : "uvec2";
-    return screenCall(this.stage, `${vector}( ${builder.getFragCoord()} )`);
-  }
-}
-
-function isWebGPU({ backend }: WebGPURenderer): boolean {
-  return "isWebGPUBackend" in backend;
 }
