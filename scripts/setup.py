@@ -44,6 +44,8 @@ def main() -> int:
         ensure_libllvm()
         if asked.dev:
             ensure_chromium()
+            ensure_lavapipe()
+            ensure_glslang()
             make_viewer()
         else:
             try_viewer()
@@ -148,6 +150,19 @@ def ensure_chromium() -> None:
     code = "import sys; from irradia.cli.machine import find_chromium; sys.exit(find_chromium() is None)"
     if run([str(python()), "-c", code]) != 0:
         install_system("chromium", needed_for="the tests that draw in a browser")
+
+
+def ensure_lavapipe() -> None:
+    """Software Vulkan, for the tests of shaders: the same on every machine."""
+    lists = (Path("/usr/share/vulkan/icd.d"), Path("/etc/vulkan/icd.d"))
+    if sys.platform.startswith("linux") and not any(list(there.glob("lvp_icd*.json")) for there in lists):
+        install_system("mesa-vulkan-drivers", needed_for="the tests of shaders")
+
+
+def ensure_glslang() -> None:
+    """The compiler of GLSL and HLSL that those tests hold shaders to."""
+    if not shutil.which("glslangValidator"):
+        install_system("glslang-tools", needed_for="the tests of shaders")
 
 
 def install_web() -> None:
