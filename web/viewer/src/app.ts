@@ -1,21 +1,24 @@
 /** Puts everything together: files to scene, state to picture, picture to page. */
-import { limitsOf } from "@irradia/three/webgpu";
+
 import { WEBGL2_LIMITS } from "@irradia/runtime";
+import { limitsOf } from "@irradia/three/webgpu";
 import type { WebGPURenderer } from "three/webgpu";
 import { framePose, isSamePose, type Pose } from "./camera/pose.js";
 import { Rig } from "./camera/rig.js";
 import { problemOf } from "./files/problem.js";
 import { Loop } from "./loop.js";
 import { startPose } from "./scene/model.js";
+import { Mover } from "./scene/mover.js";
 import { Stage } from "./scene/stage.js";
 import { Session } from "./session.js";
-import type { PageOptions, ViewerState } from "./state/state.js";
+import { type PageOptions, VIEWS, type ViewerState } from "./state/state.js";
 import type { Status } from "./state/status.js";
 import type { Store } from "./state/store.js";
-import { Frame, type FrameOptions, type Side } from "./view/frame.js";
+import { Frame, type FrameOptions, lightView, type Side } from "./view/frame.js";
 import { backendOf, makeRenderer } from "./view/renderer.js";
 import { choicesOf, resolveSides, type SideChoice } from "./view/sources.js";
 import { statisticsOf } from "./view/statistics.js";
+import { directText } from "./view/words.js";
 
 /** More pixels than this per pixel of layout are nothing that eyes see. */
 const MOST_PIXEL_RATIO = 2;
@@ -24,6 +27,7 @@ export class App {
   readonly session: Session;
   readonly #stage = new Stage();
   readonly #rig: Rig;
+  readonly #mover: Mover;
   #renderer: WebGPURenderer | undefined;
   #frame: Frame | undefined;
   #loop: Loop | undefined;
@@ -35,8 +39,15 @@ export class App {
     readonly status: Store<Status>,
     readonly options: PageOptions,
   ) {
+    this.#mover = new Mover({
+      element: host,
+      camera: this.#stage.camera,
+      onMove: () => this.#loop?.invalidate(),
+      onPlace: (place) => state.set({ place }),
+    });
     this.session = new Session({
       stage: this.#stage,
+      mover: this.#mover,
       status,
       limits: () => (this.#renderer ? limitsOf(this.#renderer) : WEBGL2_LIMITS),
       onScene: () => this.#welcome(),
@@ -119,6 +130,7 @@ export class App {
     );
     this.state.subscribe((now, before) => {
       if (now.left !== before.left || now.right !== before.right) this.#resolve();
+      if (now.object !== before.object || now.place !== before.place) this.#showObject();
       if (now.camera && now.camera !== before.camera && !isSamePose(now.camera, this.#rig.pose)) {
         this.#rig.pose = now.camera;
       }
@@ -143,20 +155,29 @@ export class App {
     if (!model) return;
     this.#rig.setModel(model.root, model.box);
     this.#rig.pose = this.state.value.camera ?? startPose(model, this.#stage.camera.aspect);
+    this.#showObject();
     this.#resolve();
+  }
+
+  /** The object stands where it was put, else in the middle of what the camera sees. */
+  #showObject(): void {
+    const { object, place } = this.state.value;
+    this.#mover.show(object, this.#stage.size);
+    if (object !== "off") this.#mover.place = place ?? this.#rig.pose.target;
   }
 
   /** Finds out what the sides are, now that sources or wishes have changed. */
   #resolve(): void {
     const light = this.#stage.model?.light;
-    const sources = light?.sources ?? [];
-    const choices = choicesOf(
-      sources.length > 0 ? sources : [{ name: "none", kind: "none" }],
-      this.status.value.references,
-    );
+    if (!light) return;
+    const choices = choicesOf(light.sources, this.status.value.references);
     const { left, right } = this.state.value;
     const [one, other] = resolveSides(choices, left, right);
-    this.status.set({ choices, left: one, right: other });
+    light.use(one?.kind === "light" ? one.id : "none");
+    const possible = new Set<string | null>([null, ...light.views]);
+    const views = VIEWS.filter((view) => possible.has(lightView(view)));
+    const direct = directText(light, this.#stage.isStudio);
+    this.status.set({ choices, left: one, right: other, views, direct });
     this.#loop?.invalidate();
   }
 
@@ -176,15 +197,19 @@ export class App {
   }
 
   #draw(): void {
-    if (!this.#stage.model) return;
-    this.#frame?.draw(this.#stage.scene, this.#stage.camera, this.#frameOptions());
+    const options = this.#frameOptions();
+    if (!options) return;
+    const { probes } = this.state.value;
+    const isLit = options.view === "light" || options.view === "irradiance";
+    this.#stage.showProbes(isLit ? probes : "off", options.ev);
+    this.#stage.fitDepth();
+    this.#frame?.draw(this.#stage.scene, this.#stage.camera, options);
   }
 
-  #frameOptions(): FrameOptions {
-    const { compare, tone, split, gain, view } = this.state.value;
-    const { left, right, ev } = this.status.value;
+  #frameOptions(): FrameOptions | undefined {
     const light = this.#stage.model?.light;
-    return { compare, tone, split, gain, view, ev, light, left: this.#side(left), right: this.#side(right) };
+    const { left, right, ev } = this.status.value;
+    return light && { ...this.state.value, ev, light, left: this.#side(left), right: this.#side(right) };
   }
 
   #side(choice: SideChoice | undefined): Side {
@@ -198,14 +223,14 @@ export class App {
     const { compare, ev: wanted } = this.state.value;
     const { model } = this.#stage;
     if (!model || !this.#frame) return;
-    const told =
-      wanted === "file" && model.light.baked?.lighting.lightmap ? model.light.exposure : undefined;
+    const told = wanted === "file" && model.light.baked?.lighting.lightmap ? model.light.exposure : undefined;
     const ev = typeof wanted === "number" ? wanted : (told ?? (await this.#frame.meter()));
     if (Math.abs(ev - this.status.value.ev) > 0.01) {
       this.status.set({ ev });
       this.#loop?.invalidate();
     }
-    const difference = compare === "single" ? undefined : await this.#frame.measure(this.#frameOptions());
+    const options = this.#frameOptions();
+    const difference = options && compare !== "single" ? await this.#frame.measure(options) : undefined;
     this.status.set({ difference });
     this.#keepPose();
     if (this.status.value.phase === "loading") this.status.set({ phase: "ready", message: "" });

@@ -9,7 +9,7 @@ import { loadScene } from "./files/load-scene.js";
 import type { ManifestPicture, ManifestScene } from "./files/manifest.js";
 import { environmentOf, type Picture, readPicture, readRadiance } from "./files/picture.js";
 import { problemOf } from "./files/problem.js";
-import type { Stage } from "./scene/stage.js";
+import type { Movable, Stage } from "./scene/stage.js";
 import type { Status } from "./state/status.js";
 import type { Store } from "./state/store.js";
 import type { Reference } from "./view/sources.js";
@@ -19,6 +19,8 @@ const RESOURCES = /\.(bin|png|jpe?g|webp)$/i;
 
 export interface SessionOptions {
   readonly stage: Stage;
+  /** Is lit by each scene in turn. */
+  readonly mover: Movable;
   readonly status: Store<Status>;
   readonly limits: () => TextureLimits;
   /** A scene was opened; `isFirst` is false where it took another's place. */
@@ -99,9 +101,9 @@ export class Session {
   }
 
   async #openScene(file: NamedFile, resources: readonly NamedFile[]): Promise<void> {
-    const { stage, status, limits, onScene } = this.#options;
+    const { stage, mover, status, limits, onScene } = this.#options;
     const model = await loadScene(file, resources, limits());
-    stage.setModel(model);
+    stage.setModel(model, mover);
     status.set({ model, references: [], problems: [] });
     onScene();
   }

@@ -36,13 +36,10 @@ export class Rig {
     this.navigation = "orbit";
   }
 
-  /** Adapts near, far and speed to a model. */
+  /** Adapts speed to a model, and finds its floors. */
   setModel(model: Object3D, box: Box): void {
     this.#ground = new Ground(model);
     this.#size = diagonal(box) || 1;
-    const { camera } = this.#options;
-    [camera.near, camera.far] = [this.#size / 2000, this.#size * 20];
-    camera.updateProjectionMatrix();
   }
 
   get pose(): Pose {
@@ -70,12 +67,6 @@ export class Rig {
     if (navigation === "orbit") this.#orbit = this.#makeOrbit();
     else this.#look = new Look(this.#options.element, this.#options.onChange);
     this.#options.onChange();
-  }
-
-  /** Off while something else is dragged. */
-  set isEnabled(isEnabled: boolean) {
-    if (this.#orbit) this.#orbit.enabled = isEnabled;
-    else if (!isEnabled) this.#look?.take();
   }
 
   /**

@@ -1,9 +1,8 @@
 /** One frame: each side into its own target, then both onto the canvas. */
-import type { View as LightView, SceneLight } from "@irradia/three/webgpu";
-import type { Camera, RenderTarget, Scene, WebGPURenderer } from "three/webgpu";
-import { FloatType } from "three/webgpu";
+import { IrradiancePass, type View as LightView, type SceneLight } from "@irradia/three/webgpu";
+import { type Camera, FloatType, type Scene, type WebGPURenderer } from "three/webgpu";
 import type { Picture } from "../files/picture.js";
-import type { View } from "../state/state.js";
+import type { Pass, View } from "../state/state.js";
 import { Composite, type CompositeOptions } from "./composite.js";
 import type { Difference } from "./error-picture.js";
 import { automaticEv } from "./exposure.js";
@@ -19,7 +18,8 @@ export interface FrameOptions extends Omit<CompositeOptions, "isDisplay"> {
   readonly left: Side;
   readonly right: Side;
   readonly view: View;
-  readonly light: SceneLight | undefined;
+  readonly pass: Pass;
+  readonly light: SceneLight;
 }
 
 /** Texels that automatic exposure looks at, across and down. */
@@ -33,14 +33,13 @@ export class Frame {
   readonly #targets = [makeTarget(SAMPLES), makeTarget(SAMPLES)] as const;
   readonly #composite = new Composite(this.#targets[0].texture, this.#targets[1].texture);
   readonly #references = new ReferencePass();
-  readonly #meter = {
-    pass: new FullScreen(texelOf(this.#targets[0].texture)(0, 0)),
-    target: makeTarget(0, FloatType),
-  };
+  readonly #meterPass = new FullScreen(texelOf(this.#targets[0].texture)(0, 0));
+  readonly #meterTarget = makeTarget(0, FloatType);
+  #pass: { readonly pass: IrradiancePass; readonly light: SceneLight; readonly kind: Pass } | undefined;
 
   constructor(renderer: WebGPURenderer) {
     this.#renderer = renderer;
-    this.#meter.target.setSize(METER_WIDTH, METER_HEIGHT);
+    this.#meterTarget.setSize(METER_WIDTH, METER_HEIGHT);
   }
 
   /** @param width pixels of the canvas, not of its layout */
@@ -49,17 +48,17 @@ export class Frame {
     this.#composite.setSize(width, height);
   }
 
-  draw(scene: Scene, camera: Camera, options: FrameOptions, target: RenderTarget | null = null): void {
+  draw(scene: Scene, camera: Camera, options: FrameOptions): void {
     this.#drawSide(0, options.left, scene, camera, options);
     if (options.compare !== "single") this.#drawSide(1, options.right, scene, camera, options);
-    this.#composite.draw(this.#renderer, compositeOptions(options), target);
+    this.#composite.draw(this.#renderer, compositeOptions(options));
   }
 
   /** Stops for the left side as it was last drawn. */
   async meter(): Promise<number> {
-    const { pass, target } = this.#meter;
-    pass.draw(this.#renderer, target);
-    const rgba = await this.#renderer.readRenderTargetPixelsAsync(target, 0, 0, METER_WIDTH, METER_HEIGHT);
+    this.#meterPass.draw(this.#renderer, this.#meterTarget);
+    const size = [METER_WIDTH, METER_HEIGHT] as const;
+    const rgba = await this.#renderer.readRenderTargetPixelsAsync(this.#meterTarget, 0, 0, ...size);
     return automaticEv(rgba as unknown as Float32Array);
   }
 
@@ -69,10 +68,11 @@ export class Frame {
   }
 
   dispose(): void {
-    for (const target of [...this.#targets, this.#meter.target]) target.dispose();
-    this.#meter.pass.dispose();
+    for (const target of [...this.#targets, this.#meterTarget]) target.dispose();
+    this.#meterPass.dispose();
     this.#composite.dispose();
     this.#references.dispose();
+    this.#pass?.pass.dispose();
   }
 
   #drawSide(index: 0 | 1, side: Side, scene: Scene, camera: Camera, options: FrameOptions): void {
@@ -81,27 +81,46 @@ export class Frame {
       this.#references.draw(this.#renderer, side.picture, target);
       return;
     }
-    const { light, view } = options;
-    if (light) {
-      light.use(side.source);
-      light.view = lightView(view);
-    }
+    const { light, view, pass } = options;
+    showSource(light, side.source, view);
     this.#renderer.setRenderTarget(target);
+    this.#passFor(light, pass)?.render(scene, camera);
     this.#renderer.render(scene, camera);
     this.#renderer.setRenderTarget(null);
   }
+
+  #passFor(light: SceneLight, kind: Pass): IrradiancePass | undefined {
+    if (this.#pass && (this.#pass.light !== light || this.#pass.kind !== kind)) {
+      this.#pass.pass.dispose();
+      this.#pass = undefined;
+    }
+    if (kind === "inline") return undefined;
+    this.#pass ??= { pass: new IrradiancePass(this.#renderer, light, { resolution: kind }), light, kind };
+    return this.#pass.pass;
+  }
+}
+
+/** What moves takes the same light as the rest, where that is to be had everywhere. */
+function showSource(light: SceneLight, name: string, view: View): void {
+  light.use(name);
+  const mobile = light.sources.filter((source) => source.isDynamic);
+  const dynamic = name === "none" ? undefined : (mobile.find((source) => source.name === name) ?? mobile[0]);
+  light.dynamicSource = dynamic?.name ?? null;
+  light.view = lightView(view);
 }
 
 function compositeOptions(options: FrameOptions): CompositeOptions {
-  return { ...options, isDisplay: [isDisplay(options.left, options), isDisplay(options.right, options)] };
+  return {
+    ...options,
+    isDisplay: [isDisplay(options.left, options.view), isDisplay(options.right, options.view)],
+  };
 }
 
-function isDisplay(side: Side, { view, light }: FrameOptions): boolean {
-  if (side.kind === "picture") return !side.picture.isLinear;
-  return light !== undefined && !LIT_VIEWS.includes(view);
+function isDisplay(side: Side, view: View): boolean {
+  return side.kind === "picture" ? !side.picture.isLinear : !LIT_VIEWS.includes(view);
 }
 
-/** The names of @irradia/three. */
+/** A view by its name in @irradia/three; null is the picture. */
 export function lightView(view: View): LightView | null {
   if (view === "light") return null;
   if (view === "uv") return "lightmap-uv";
