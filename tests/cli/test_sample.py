@@ -171,6 +171,79 @@ def test_ctrl_c_leaves_the_beginning_of_the_dataset(workshop, tmp_path):
     assert 0 < len(found) < 100_000_000
 
 
+@pytest.fixture
+def ctrl_c(monkeypatch):
+    """``ctrl_c("train", 50)``: the next sampling is asked to end after so many points of that file."""
+    from irradia.bake.datasets import generate
+
+    whole = generate.sample_rows
+
+    def at(which: str, points: int) -> None:
+        def rows(setting, options, name, *more):
+            for part in whole(setting, options, name, *more):
+                if name == which:
+                    signal.raise_signal(signal.SIGINT)
+                    part = part[:points]
+                yield part
+
+        monkeypatch.setattr(generate, "sample_rows", rows)
+
+    return at
+
+
+def _contents(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+@pytest.mark.parametrize("end", [".samples", ".bin"])
+def test_ctrl_c_does_not_replace_a_larger_dataset(end, workshop, tmp_path, ctrl_c, capfd):
+    out = tmp_path / f"data{end}"
+    assert sample(workshop, out) == 0
+    before = _contents(tmp_path)
+    ctrl_c("train", 50)
+    capfd.readouterr()
+    assert sample(workshop, out, "--seed", "1", "--json") == 130
+    said = json.loads(capfd.readouterr().out)
+    assert _contents(tmp_path).items() >= before.items()
+    stopped = tmp_path / f"data.stopped{end}"
+    assert set(_contents(tmp_path)) - set(before) == {stopped.name, "data.stopped.validation.samples"}
+    assert len(open_samples(stopped)) == 50
+    assert said["path"] == str(stopped)
+    assert said["kept"] == {"path": str(out), "points": 600}
+    judge = open_samples(tmp_path / "data.stopped.validation.samples")
+    assert judge.info.provenance["seed"] == 1
+    assert said["validation"]["path"] == str(judge.path)
+
+
+def test_ctrl_c_before_the_first_sample_leaves_an_earlier_dataset_and_its_judge(workshop, tmp_path, ctrl_c):
+    assert sample(workshop, tmp_path / "data.samples") == 0
+    before = _contents(tmp_path)
+    ctrl_c("validation", 10)
+    assert sample(workshop, tmp_path / "data.samples", "--seed", "1") == 130
+    assert _contents(tmp_path) == before
+
+
+def test_ctrl_c_replaces_a_smaller_dataset_and_one_that_is_damaged(workshop, tmp_path, ctrl_c):
+    out = tmp_path / "data.samples"
+    assert sample(workshop, out, "--count", "20") == 0
+    ctrl_c("train", 50)
+    assert sample(workshop, out, "--seed", "1") == 130
+    assert len(open_samples(out)) == 50
+    out.write_bytes(b"damaged")
+    assert sample(workshop, out, "--seed", "2") == 130
+    assert open_samples(out).info.provenance["seed"] == 2
+    judge = open_samples(tmp_path / "data.validation.samples")
+    assert judge.info.provenance["seed"] == 2
+
+
+def test_a_whole_dataset_replaces_a_larger_one(workshop, tmp_path):
+    out = tmp_path / "data.samples"
+    for count in ("100", "20"):
+        assert sample(workshop, out, "--count", count) == 0
+    assert len(open_samples(out)) == 20
+    assert set(_contents(tmp_path)) == {"data.samples", "data.validation.samples"}
+
+
 @pytest.mark.parametrize(
     "arguments",
     [

@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 import math
 import struct
+import threading
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from irradia.core.errors import InputError
+from irradia.core.lock import acquire_lock
 from irradia.formats.samples import (
     SampleInfo,
     SampleWriter,
@@ -262,3 +264,27 @@ def test_any_flipped_byte_of_the_header_is_refused_or_harmless(path: Path) -> No
             except InputError:
                 continue
             np.testing.assert_array_equal(found.rows, ROWS[: len(found)])
+
+
+def test_readers_that_ask_for_a_writer_keep_none_from_starting(tmp_path: Path) -> None:
+    path = tmp_path / "room.samples"
+    for count in range(3):
+        probe = acquire_lock(tmp_path / f".{path.name}.lock")  # as `is_being_written` does
+        assert probe is not None
+        asked = threading.Timer(0.1, probe.release)
+        asked.start()
+        with SampleWriter(path, SURFACE) as writer:
+            writer.append(ROWS)
+        asked.join()
+        assert len(open_samples(path)) == 2, count
+
+
+def test_a_dataset_may_take_another_name_in_the_end(tmp_path: Path) -> None:
+    path, other = tmp_path / "room.samples", tmp_path / "other.samples"
+    for name in (None, other):
+        with SampleWriter(path, SURFACE) as writer:
+            writer.append(ROWS[: 2 if name is None else 1])
+            writer.close(name)
+    assert (len(open_samples(path)), len(open_samples(other))) == (2, 1)
+    assert not part_path(path).exists()
+    assert not is_being_written(path)

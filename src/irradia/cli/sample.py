@@ -102,7 +102,7 @@ def command(as_json: bool, **choices: Any) -> int:
     """Sample a scene's light, for a field to learn from.
 
     SCENE is a .gltf, a .glb, or builtin:NAME. Ctrl-C ends early: what has been written by then is a
-    smaller dataset of the same kind.
+    smaller dataset of the same kind. It doesn't replace a larger one that is there already.
     """
     from irradia.cli.sample_job import run_sampling
     from irradia.core.progress import stderr_progress
@@ -166,4 +166,8 @@ def describe(result: dict[str, Any]) -> str:
         lines.append(f"and {judge['path']}: {judge['points']:,} points of {judge['samples_per_point']} rays")
     if not result["complete"]:
         lines.append("Stopped early; what was written is usable.")
+    if "kept" in result:
+        lines.append(
+            f"{result['kept']['path']} stays as it was: it holds {result['kept']['points']:,} samples."
+        )
     return "\n".join(lines)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
+from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from threading import Event
@@ -154,6 +154,9 @@ def write_datasets(
 ) -> dict[str, Any]:
     """Writes a dataset to ``out``, and before it NAME.validation.samples; the first Ctrl-C ends it early.
 
+    An earlier dataset of the name stays, with what judges it, until this one is whole. One that is ended
+    early replaces only a smaller one; beside a larger it is NAME.stopped.
+
     Args:
         out: A ``.samples`` or ``.bin``.
         setting: The scene.
@@ -165,22 +168,56 @@ def write_datasets(
     Returns:
         What was made and how fast, plain values.
     """
+    stopped = Event()
+    with asks_first(stopped.set, progress.say):
+        plan = _Plan(setting, origin, progress, stopped)
+        made = _write_both(out, options, n_validation, plan)
+    return {**made, "complete": not stopped.is_set()}
+
+
+def _write_both(out: Path, options: SampleOptions, n_validation: int, plan: _Plan) -> dict[str, Any]:
     from irradia.formats.samples import validation_path
 
-    stopped = Event()
     made: dict[str, Any] = {}
-    with asks_first(stopped.set, progress.say):
-        path = validation_path(out.with_suffix(".samples"))
+    judge_path = validation_path(out.with_suffix(".samples"))
+    earlier = finished_rows(out)
+    with ExitStack() as files:
+        judge = None
         if n_validation:
             better = options.for_validation(n_validation)
-            tally = _write(path, setting, better, _VALIDATION, origin, progress, stopped)
-            made["validation"] = tally.to_dict(better.samples)
+            judge = files.enter_context(_Growing(judge_path, plan, better))
+            made["validation"] = judge.fill(_VALIDATION).to_dict(better.samples)
+            if not earlier:
+                judge.close(judge_path)  # so that a training that follows has it
+        elif not earlier:
+            judge_path.unlink(missing_ok=True)  # it would judge fields of these samples
+        if plan.stopped.is_set():
+            return made
+        train = files.enter_context(_Growing(out, plan, options))
+        tally = train.fill(_TRAIN)
+        keep = plan.stopped.is_set() and earlier > tally.n_points
+        target = out.with_name(f"{out.stem}.stopped{out.suffix}") if keep else out
+        made |= tally.to_dict(options.samples) | {"path": str(target)}
+        if keep:
+            judge_path = validation_path(target.with_suffix(".samples"))
+            made["kept"] = {"path": str(out), "points": earlier}
+        if judge is None:
+            judge_path.unlink(missing_ok=True)
         else:
-            path.unlink(missing_ok=True)  # an earlier one would judge fields of these samples
-        if not stopped.is_set():
-            tally = _write(out, setting, options, _TRAIN, origin, progress, stopped)
-            made.update(tally.to_dict(options.samples))
-    return {**made, "complete": not stopped.is_set()}
+            judge.close(judge_path)
+            made["validation"]["path"] = str(judge_path)
+        train.close(target)
+    return made
+
+
+def finished_rows(path: Path) -> int:
+    """How many samples a finished dataset has; 0 where there is none that can be read."""
+    from irradia.formats.samples import open_samples
+
+    try:
+        return len(open_samples(path)) if path.is_file() else 0
+    except InputError:
+        return 0
 
 
 def open_lit_scene(job: SampleJob, progress: Progress) -> tuple[Scene, BakedPages | None, dict[str, str]]:
@@ -206,53 +243,81 @@ def open_lit_scene(job: SampleJob, progress: Progress) -> tuple[Scene, BakedPage
     return scene, lightmap, inputs | {f"lightmap {path.name}": provenance.sha256_file(path)}
 
 
-def _write(
-    path: Path,
-    setting: Setting,
-    options: SampleOptions,
-    name: str,
-    origin: Mapping[str, Any],
-    progress: Progress,
-    stopped: Event,
-) -> Tally:
-    """One file; ends early where Ctrl-C asks for it."""
-    from irradia.bake.datasets.generate import expected_points, sample_info, sample_rows
-    from irradia.formats.samples import SampleWriter
+@dataclass(frozen=True)
+class _Plan:
+    """What both files of a sampling share."""
 
-    info, tally = sample_info(setting, options, origin), Tally(path)
-    stage_name = "samples" if name == _TRAIN else f"samples for {name}"
-    with (
-        _streamed(path) as file,
-        progress.stage(stage_name, expected_points(setting, options), "points") as stage,
-        SampleWriter(file, info) as writer,
-    ):
-        start = time.perf_counter()
-        for rows in sample_rows(setting, options, name):
-            writer.append(rows)
-            tally.add(rows, info.n_columns - 1 - info.n_values)
-            stage.advance(len(rows))
-            if stopped.is_set():
-                break
-        tally.seconds = time.perf_counter() - start
-    return tally
+    setting: Setting
+    origin: Mapping[str, Any]
+    progress: Progress
+    stopped: Event
 
 
-@contextmanager
-def _streamed(path: Path) -> Iterator[Path]:
-    """Where rows go: the file itself, or one beside a ``.bin`` that becomes it in the end."""
-    if path.suffix.lower() != ".bin":
-        yield path
-        return
-    from irradia.formats.samples import open_samples, part_path
-    from irradia.formats.samples_bin import write_samples_bin
+class _Growing:
+    """A file that grows beside its name.
 
-    beside = path.with_name(f"{path.name}.samples")
-    try:
-        yield beside
-        write_samples_bin(path, open_samples(beside))
-    finally:
-        for left in (beside, part_path(beside)):
-            left.unlink(missing_ok=True)
+    Leaving the context unclosed takes it away; after an error what there is of a ``.samples`` stays.
+    """
+
+    def __init__(self, path: Path, plan: _Plan, options: SampleOptions) -> None:
+        from irradia.bake.datasets.generate import sample_info
+        from irradia.formats.samples import SampleWriter
+
+        self._path, self._plan, self._options = path, plan, options
+        self._info = sample_info(plan.setting, options, plan.origin)
+        beside = path.with_name(f"{path.name}.samples") if self._is_bin else path
+        self._writer = SampleWriter(beside, self._info)
+        self._closed = False
+
+    @property
+    def _is_bin(self) -> bool:
+        return self._path.suffix.lower() == ".bin"
+
+    def fill(self, name: str) -> Tally:
+        """Samples until all points are there, or Ctrl-C asks for an end."""
+        from irradia.bake.datasets.generate import expected_points, sample_rows
+
+        plan, tally = self._plan, Tally(self._path)
+        first_value = self._info.n_columns - 1 - self._info.n_values
+        stage_name = "samples" if name == _TRAIN else f"samples for {name}"
+        with plan.progress.stage(stage_name, expected_points(plan.setting, self._options), "points") as stage:
+            start = time.perf_counter()
+            for rows in sample_rows(plan.setting, self._options, name):
+                self._writer.append(rows)
+                tally.add(rows, first_value)
+                stage.advance(len(rows))
+                if plan.stopped.is_set():
+                    break
+            tally.seconds = time.perf_counter() - start
+        return tally
+
+    def close(self, target: Path) -> None:
+        """Ends the file under this name; doing so twice is harmless."""
+        if self._closed:
+            return
+        if self._is_bin:
+            from irradia.formats.samples import open_samples
+            from irradia.formats.samples_bin import write_samples_bin
+
+            self._writer.close()
+            write_samples_bin(target, open_samples(self._writer.path))
+            self._writer.path.unlink()
+        else:
+            self._writer.close(target)
+        self._closed = True
+
+    def __enter__(self) -> _Growing:
+        return self
+
+    def __exit__(self, kind: object, *_: object) -> None:
+        from irradia.formats.samples import part_path
+
+        self._writer.abandon()
+        if self._closed or (kind is not None and not self._is_bin):
+            return
+        part_path(self._writer.path).unlink(missing_ok=True)
+        if self._is_bin:
+            self._writer.path.unlink(missing_ok=True)
 
 
 def _origin(job: SampleJob, inputs: dict[str, str]) -> dict[str, Any]:

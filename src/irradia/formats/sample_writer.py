@@ -17,6 +17,8 @@ from irradia.core.lock import FileLock, acquire_lock, lock_holder
 from irradia.formats.sample_header import COUNT_AT, GROWING, encode_header
 from irradia.formats.sample_rows import F32, SampleInfo, check_rows
 
+_PROBES_TAKE_S = (0.01, 0.03, 0.1, 0.3)
+
 
 class SampleWriter:
     """Writes a ``.samples`` file piece by piece; use as a context, or call :meth:`close`.
@@ -60,14 +62,17 @@ class SampleWriter:
         self._stream.flush()
         self.n_rows += len(stored)
 
-    def close(self) -> None:
-        """Ends the file: notes the number of rows and gives it its name. Doing so twice is harmless."""
+    def close(self, path: Path | None = None) -> None:
+        """Ends the file: notes the number of rows and gives it its name, or another.
+
+        Doing so twice is harmless.
+        """
         if self._stream is None:
             return
         self._stream.seek(COUNT_AT)
         self._stream.write(struct.pack("<Q", self.n_rows))
         self._release()
-        _rename(self._part, self.path)
+        _rename(self._part, path or self.path)
 
     def abandon(self) -> None:
         """Stops without ending the file: ``NAME.part`` stays, and readers know it for unfinished."""
@@ -110,11 +115,15 @@ def _lock_path(path: Path) -> Path:
 
 
 def _lock(path: Path) -> FileLock:
-    lock = acquire_lock(_lock_path(path))
-    if lock is None:
-        holder = lock_holder(_lock_path(path)) or "another process"
-        raise InputError(f"it is being written by {holder}", where=str(path), fix="Wait, or choose another.")
-    return lock
+    """The writer's lock. A reader that asks whether there is a writer holds it too, for no longer than that."""
+    for patience in (*_PROBES_TAKE_S, math.inf):
+        lock = acquire_lock(_lock_path(path))
+        if lock is not None:
+            return lock
+        if patience < math.inf:
+            time.sleep(patience)
+    holder = lock_holder(_lock_path(path)) or "another process"
+    raise InputError(f"it is being written by {holder}", where=str(path), fix="Wait, or choose another.")
 
 
 def _rename(part: Path, path: Path) -> None:
