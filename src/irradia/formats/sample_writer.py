@@ -115,7 +115,7 @@ def _lock_path(path: Path) -> Path:
 
 
 def _lock(path: Path) -> FileLock:
-    """The writer's lock. A reader that asks whether there is a writer holds it too, for no longer than that."""
+    """The writer's lock. Readers that ask whether there is a writer hold it too, for no longer than that."""
     for patience in (*_PROBES_TAKE_S, math.inf):
         lock = acquire_lock(_lock_path(path))
         if lock is not None:
