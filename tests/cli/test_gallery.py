@@ -19,7 +19,6 @@ from irradia.core.errors import MissingDependencyError
 from .viewing import WEIGHTS, glb, viewer, write_results
 
 __all__ = ["viewer"]
-COLOURS = {"reference": (200, 0, 0), "field:0": (0, 0, 200)}
 # Shows each source as a colour, and its exposure as green.
 PAINTER = """
 const asked = new URLSearchParams(location.search);
@@ -34,7 +33,15 @@ async function show() {
   if (asked.get("kiosk") !== "1") throw new Error("not alone");
   const ev = asked.has("ev") ? Number(asked.get("ev")) : 3.5;
   const [r, g, b] = colours[asked.get("left")];
-  document.body.style.background = `rgb(${r} ${Math.round(10 * ev)} ${b})`;
+  globalThis.irradiaViewer = {
+    picture: () => {
+      const canvas = new OffscreenCanvas(innerWidth, innerHeight);
+      const context = canvas.getContext("2d");
+      context.fillStyle = `rgb(${r} ${Math.round(10 * ev)} ${b})`;
+      context.fillRect(0, 0, innerWidth, innerHeight);
+      return canvas.convertToBlob();
+    },
+  };
   root.dataset.ev = String(ev);
   root.dataset.camera = asked.get("camera") ?? asked.get("pose");
 }

@@ -49,7 +49,7 @@ from irradia.cli.output import finish
     "--timeout",
     "timeout_s",
     type=options.Finite(0.0, low_open=True),
-    default=120.0,
+    default=300.0,
     show_default=True,
     metavar="SECONDS",
     help="For each picture.",

@@ -22,6 +22,7 @@ SOFTWARE_FLAGS = (
     "--use-angle=swiftshader",
     "--use-vulkan=swiftshader",
     "--enable-features=Vulkan",
+    "--enable-unsafe-swiftshader",
 )
 _FLAGS = (
     "--headless=new",
@@ -83,13 +84,14 @@ class Page:
         if answer.get("errorText"):
             raise BrowserError(f"{url}: {answer['errorText']}")
 
-    def evaluate(self, expression: str) -> Any:
+    def evaluate(self, expression: str, timeout_s: float = _ANSWER_S) -> Any:
         """The value of an expression of JavaScript, or of what it promises.
 
         Raises:
-            BrowserError: It throws.
+            BrowserError: It throws, or takes longer.
         """
-        answer = self._call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        asked = {"expression": expression, "returnByValue": True, "awaitPromise": True}
+        answer = self._call("Runtime.evaluate", timeout_s, **asked)
         if "exceptionDetails" in answer:
             raise BrowserError(_exception(answer["exceptionDetails"]))
         return answer["result"].get("value")
@@ -101,17 +103,17 @@ class Page:
             BrowserError: There is none in time; it holds what the page complained of.
         """
         ends_at = time.monotonic() + timeout_s
-        while not (value := self._value_if_there(expression)):
+        while not (value := self._value_if_there(expression, ends_at)):
             if time.monotonic() > ends_at:
                 said = f"; it says: {' / '.join(self.complaints[-3:])}" if self.complaints else ""
                 raise BrowserError(f"the page isn't ready after {timeout_s:g} s{said}")
             self._listen(_POLL_S)
         return value
 
-    def _value_if_there(self, expression: str) -> Any:
+    def _value_if_there(self, expression: str, ends_at: float) -> Any:
         """Like ``evaluate``; nothing while one page goes and the next isn't there yet."""
         try:
-            return self.evaluate(expression)
+            return self.evaluate(expression, max(ends_at - time.monotonic(), _POLL_S))
         except BrowserError:
             if self._crashed:
                 raise
@@ -127,21 +129,21 @@ class Page:
         with suppress(IrradiaError):
             self._call("Browser.close")
 
-    def _call(self, method: str, **arguments: Any) -> dict[str, Any]:
+    def _call(self, method: str, timeout_s: float = _ANSWER_S, /, **arguments: Any) -> dict[str, Any]:
         """Sends a command and waits for its answer."""
         self._number += 1
         command: dict[str, Any] = {"id": self._number, "method": method, "params": arguments}
         if self._session is not None:
             command["sessionId"] = self._session
         self._socket.send(json.dumps(command))
-        ends_at = time.monotonic() + _ANSWER_S
+        ends_at = time.monotonic() + timeout_s
         while (left := ends_at - time.monotonic()) > 0.0:
             message = self._receive(left)
             if message is not None and message.get("id") == self._number:
                 if "error" in message:
                     raise BrowserError(f"{method}: {message['error'].get('message')}")
                 return message["result"]
-        raise BrowserError(f"the browser doesn't answer {method} within {_ANSWER_S:g} s")
+        raise BrowserError(f"the browser doesn't answer {method} within {timeout_s:g} s")
 
     def _listen(self, seconds: float) -> None:
         """Takes in what the page says meanwhile."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -28,6 +29,13 @@ from irradia.scene.framing import DEFAULT_ASPECT
 from irradia.scene.types import Camera
 
 _STATE = 'document.documentElement?.dataset.state === "%s"'
+# The viewer's own picture: one of the page would wait for a moment in which nothing is drawn.
+_PICTURE = """irradiaViewer.picture().then((blob) => new Promise((resolve, reject) => {
+  const reader = new FileReader();
+  reader.onload = () => resolve(reader.result.slice(reader.result.indexOf(",") + 1));
+  reader.onerror = () => reject(reader.error);
+  reader.readAsDataURL(blob);
+}))"""
 _ENDED = f"{_STATE % 'ready'} || {_STATE % 'error'}"
 
 
@@ -219,7 +227,7 @@ def _take(page: Page, url: str, shot: Shot, timeout_s: float) -> Taken:
         if page.evaluate(_STATE % "error"):
             said = page.evaluate("document.documentElement.dataset.message")
             return Taken(shot, problem=said or "the viewer can't show it")
-        return Taken(shot, page.picture(), _exposure(page))
+        return Taken(shot, base64.b64decode(page.evaluate(_PICTURE, timeout_s)), _exposure(page))
     except (BrowserError, SocketError) as error:
         return Taken(shot, problem=str(error))
 
