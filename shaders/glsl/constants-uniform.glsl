@@ -2,6 +2,5 @@
 // given, in WGSL: var<uniform> irradia_constants: array<vec4f>
 
 vec4 irradia_constant(uint at) {
-    vec4 _e3 = irradia_constants[at];
-    return _e3;
+    return irradia_constants[at];
 }

@@ -9,5 +9,5 @@ vec4 irradia_lobe_quadratic(vec3 n) {
 }
 
 float irradia_lobe_squares(vec3 n) {
-    return (0.42904276 * ((n.x * n.x) - (n.y * n.y)));
+    return 0.42904276 * ((n.x * n.x) - (n.y * n.y));
 }

@@ -7,10 +7,10 @@
 vec3 irradia_light(vec3 normal, vec3 surface_normal, vec2 lightmap_uv, float page) {
     vec4 _e4 = irradia_lightmap_sample(lightmap_uv, page);
     float _e9 = irradia_map_scales[0].x;
-    vec3 plain = (_e4.xyz * _e9);
+    vec3 plain = _e4.xyz * _e9;
     vec4 _e11 = irradia_direction_sample(lightmap_uv, page);
     float _e16 = irradia_map_scales[0].y;
-    vec3 coded = (_e11.xyz * _e16);
+    vec3 coded = _e11.xyz * _e16;
     float _e23 = irradia_dominant_share(((2.0 * coded) - vec3(1.0)), normal, surface_normal);
     return max((plain * _e23), vec3(0.0));
 }

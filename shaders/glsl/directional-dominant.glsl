@@ -3,5 +3,5 @@
 float irradia_dominant_share(vec3 direction, vec3 normal, vec3 surface_normal) {
     float lit = max((0.5 + (0.5 * dot(normal, direction))), 0.0);
     float own = max((0.5 + (0.5 * dot(surface_normal, direction))), 0.0001);
-    return (lit / own);
+    return lit / own;
 }

@@ -1,7 +1,7 @@
 // Generated from shaders/wgsl/directional-mono-sh.wgsl by `npm run shaders` in web/: don't edit.
 
 float irradia_mono_lobe(vec3 direction, vec3 normal, vec3 surface_normal) {
-    float t = (2.0 * dot(direction, normal));
+    float t = 2.0 * dot(direction, normal);
     float r = min(length(direction), 1.0);
     float cosine = dot(normal, surface_normal);
     float bent = max((1.0 - (cosine * cosine)), 0.0);

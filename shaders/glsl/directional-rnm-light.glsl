@@ -7,8 +7,7 @@
 
 vec3 irradia_light(vec3 normal, vec3 surface_normal, vec4 tangent, vec2 lightmap_uv, float page) {
     vec3 _e5 = irradia_rnm_weights(normal, surface_normal, tangent);
-    vec4 _e8 = irradia_map_scales[0];
-    vec3 weights = (_e5 * _e8.xyz);
+    vec3 weights = _e5 * irradia_map_scales[0].xyz;
     vec4 _e11 = irradia_rnm_a_sample(lightmap_uv, page);
     vec3 a = _e11.xyz;
     vec4 _e13 = irradia_rnm_b_sample(lightmap_uv, page);

@@ -9,13 +9,13 @@
 vec3 irradia_light(vec3 normal, vec3 surface_normal, vec2 lightmap_uv, float page) {
     vec4 scales = irradia_map_scales[0];
     vec4 _e7 = irradia_sh_mean_sample(lightmap_uv, page);
-    vec3 mean = (_e7.xyz * scales.x);
+    vec3 mean = _e7.xyz * scales.x;
     vec4 _e14 = irradia_sh_x_sample(lightmap_uv, page);
-    vec3 x_1 = (((2.0 * scales.y) * _e14.xyz) - vec3(1.0));
+    vec3 x_1 = ((2.0 * scales.y) * _e14.xyz) - vec3(1.0);
     vec4 _e23 = irradia_sh_y_sample(lightmap_uv, page);
-    vec3 y_1 = (((2.0 * scales.z) * _e23.xyz) - vec3(1.0));
+    vec3 y_1 = ((2.0 * scales.z) * _e23.xyz) - vec3(1.0);
     vec4 _e32 = irradia_sh_z_sample(lightmap_uv, page);
-    vec3 z_1 = (((2.0 * scales.w) * _e32.xyz) - vec3(1.0));
+    vec3 z_1 = ((2.0 * scales.w) * _e32.xyz) - vec3(1.0);
     vec3 _e38 = irradia_sh_lobes(x_1, y_1, z_1, normal, surface_normal);
-    return (mean * _e38);
+    return mean * _e38;
 }

@@ -9,9 +9,8 @@ vec3 irradia_view_raw(vec3 position, vec3 normal) {
 
 vec3 irradia_view_hidden(vec3 position, vec3 normal) {
     irradia_run(position, normal);
-    vec4 _e4 = irradia_units[0];
-    vec3 units = _e4.xyz;
-    return (vec3(0.5) + ((0.5 * units) / (vec3(1.0) + abs(units))));
+    vec3 units = irradia_units[0].xyz;
+    return vec3(0.5) + ((0.5 * units) / (vec3(1.0) + abs(units)));
 }
 
 vec3 irradia_view_position(vec3 position, vec3 normal) {

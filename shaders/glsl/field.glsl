@@ -5,7 +5,7 @@
 vec3 irradia_unit_position(vec3 position) {
     vec4 _e2 = irradia_constant(0u);
     vec4 _e6 = irradia_constant(1u);
-    vec3 x = ((position - _e2.xyz) / _e6.xyz);
+    vec3 x = (position - _e2.xyz) / _e6.xyz;
     return clamp(x, vec3(0.0), vec3(1.0));
 }
 
@@ -14,5 +14,4 @@ void irradia_run(vec3 position, vec3 normal) {
     vec3 _e2 = irradia_unit_position(position);
     irradia_encode(_e2, normal);
     irradia_hidden_layers();
-    return;
 }

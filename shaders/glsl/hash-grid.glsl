@@ -2,23 +2,23 @@
 // needs: value, numbers
 
 uint irradia_table_corner(uvec3 corner, uint resolution, uint kind, uint n_entries, uvec3 primes) {
-    if ((kind == 0u)) {
-        uint entry = (corner.x + (resolution * (corner.y + (resolution * corner.z))));
-        return ((entry >= n_entries) ? (entry - n_entries) : entry);
+    if (kind == 0u) {
+        uint entry = corner.x + (resolution * (corner.y + (resolution * corner.z)));
+        return (entry >= n_entries) ? (entry - n_entries) : entry;
     }
-    uvec3 hashed = (corner * primes);
-    uint hash = ((hashed.x ^ hashed.y) ^ hashed.z);
-    if ((kind == 1u)) {
-        return (hash & (n_entries - 1u));
+    uvec3 hashed = corner * primes;
+    uint hash = (hashed.x ^ hashed.y) ^ hashed.z;
+    if (kind == 1u) {
+        return hash & (n_entries - 1u);
     }
-    return (hash % n_entries);
+    return hash % n_entries;
 }
 
 uvec4 irradia_table_entry(uint first_texel, uint entry, uint part, uvec4 shape) {
-    uint texel = ((first_texel + ((entry >> shape.z) << shape.w)) + part);
-    uint row = (texel >> shape.x);
+    uint texel = (first_texel + ((entry >> shape.z) << shape.w)) + part;
+    uint row = texel >> shape.x;
     uvec3 at = uvec3((texel & ((1u << shape.x) - 1u)), (row & ((1u << shape.y) - 1u)), (row >> shape.y));
-    uint shift = ((entry & ((1u << shape.z) - 1u)) * (32u >> shape.z));
+    uint shift = (entry & ((1u << shape.z) - 1u)) * (32u >> shape.z);
     uvec4 _e37 = irradia_table_texel(at, shift);
     return _e37;
 }
@@ -36,46 +36,33 @@ void irradia_table_hash_grid(uint record, vec3 unit) {
     vec4 _e17 = irradia_constant((record + 3u));
     uint _e19 = irradia_whole(_e17.xy);
     uvec3 primes = uvec3(_e12, _e14, _e19);
-    uint n_parts = (1u << shape.w);
+    uint n_parts = 1u << shape.w;
     column = grid.x;
-    at = (record + 4u);
+    at = record + 4u;
     for (uint level = 0u; level < grid.y; level += 1u) {
-        uint _e34 = at;
-        vec4 _e35 = irradia_constant(_e34);
-        uint _e36 = at;
-        vec4 _e39 = irradia_constant((_e36 + 1u));
-        uint _e40 = at;
-        vec4 _e43 = irradia_constant((_e40 + 2u));
+        vec4 _e35 = irradia_constant(at);
+        vec4 _e39 = irradia_constant((at + 1u));
+        vec4 _e43 = irradia_constant((at + 2u));
         uvec2 scales = uvec2(_e43.xy);
         uint _e47 = irradia_whole(_e39.xy);
         uint _e49 = irradia_whole(_e39.zw);
-        vec3 position = ((_e35.x * unit) + vec3(_e35.y));
+        vec3 position = (_e35.x * unit) + vec3(_e35.y);
         vec3 cell = floor(position);
-        vec3 fraction = (position - cell);
+        vec3 fraction = position - cell;
         for (uint part = 0u; part < n_parts; part += 1u) {
             irradia_table_clear();
             for (uint corner = 0u; corner < 8u; corner += 1u) {
-                uint _e66 = corner;
-                uint _e69 = corner;
-                uint _e74 = corner;
-                uvec3 far = uvec3((_e66 & 1u), ((_e69 >> 1u) & 1u), (_e74 >> 2u));
+                uvec3 far = uvec3((corner & 1u), ((corner >> 1u) & 1u), (corner >> 2u));
                 vec3 side = mix((vec3(1.0) - fraction), fraction, equal(far, uvec3(1u)));
                 uint _e91 = irradia_table_corner((uvec3(cell) + far), uint(_e35.z), uint(_e35.w), _e49, primes);
                 float _e100 = irradia_table_scale(scales.x, (_e91 >> scales.y));
-                float weight = (((side.x * side.y) * side.z) * _e100);
-                uint _e102 = part;
-                uvec4 _e103 = irradia_table_entry(_e47, _e91, _e102, shape);
+                float weight = ((side.x * side.y) * side.z) * _e100;
+                uvec4 _e103 = irradia_table_entry(_e47, _e91, part, shape);
                 irradia_table_add(_e103, weight);
             }
-            uint _e107 = column;
-            uint _e108 = part;
-            uint _e113 = part;
-            irradia_table_push((_e107 + (_e108 * grid.w)), (grid.z - (_e113 * grid.w)));
+            irradia_table_push((column + (part * grid.w)), (grid.z - (part * grid.w)));
         }
-        uint _e120 = column;
-        column = (_e120 + grid.z);
-        uint _e123 = at;
-        at = (_e123 + 3u);
+        column = column + grid.z;
+        at = at + 3u;
     }
-    return;
 }

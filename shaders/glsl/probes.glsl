@@ -5,11 +5,10 @@
 // given, in WGSL: var<uniform> irradia_probe_layout: array<vec4f>
 
 uvec4 irradia_probe_texel(uint index) {
-    vec4 _e3 = irradia_probe_layout[3];
-    uvec2 shifts = uvec2(_e3.xy);
-    uint x = (index & ((1u << shifts.x) - 1u));
-    uint row = (index >> shifts.x);
-    uint y = (row & ((1u << shifts.y) - 1u));
+    uvec2 shifts = uvec2(irradia_probe_layout[3].xy);
+    uint x = index & ((1u << shifts.x) - 1u);
+    uint row = index >> shifts.x;
+    uint y = row & ((1u << shifts.y) - 1u);
     uvec4 _e27 = texelFetch(irradia_probes, ivec3(ivec2(uvec2(x, y)), int((row >> shifts.y))), 0);
     return _e27;
 }
@@ -20,11 +19,10 @@ vec4 irradia_probe_place(uint probe) {
 }
 
 uint irradia_probe_word(uint index) {
-    vec4 _e3 = irradia_probe_layout[3];
-    uvec2 shifts = uvec2(_e3.zw);
-    uint x_1 = (index & ((1u << shifts.x) - 1u));
-    uint row = (index >> shifts.x);
-    uint y_1 = (row & ((1u << shifts.y) - 1u));
+    uvec2 shifts = uvec2(irradia_probe_layout[3].zw);
+    uint x_1 = index & ((1u << shifts.x) - 1u);
+    uint row = index >> shifts.x;
+    uint y_1 = row & ((1u << shifts.y) - 1u);
     uvec4 _e27 = texelFetch(irradia_probe_sight, ivec3(ivec2(uvec2(x_1, y_1)), int((row >> shifts.y))), 0);
     return _e27.x;
 }
@@ -35,39 +33,39 @@ vec2 irradia_probe_seen(uint probe, vec2 place) {
     float _e10 = irradia_probe_layout[4].y;
     uint words = uint(_e10);
     uint _e16 = irradia_probe_word(((probe * words) + (_e6 >> 1u)));
-    uint pair = (_e16 >> (16u * (_e6 & 1u)));
-    return (vec2(uvec2((pair & 255u), ((pair >> 8u) & 255u))) / vec2(255.0));
+    uint pair = _e16 >> (16u * (_e6 & 1u));
+    return vec2(uvec2((pair & 255u), ((pair >> 8u) & 255u))) / vec2(255.0);
 }
 
 float irradia_probe_sees(uint probe, vec3 direction, float distance_, float reach) {
     vec2 _e4 = irradia_octahedral_uv(direction);
     float _e8 = irradia_probe_layout[2].w;
-    vec2 at = ((_e4 * _e8) - vec2(0.5));
+    vec2 at = (_e4 * _e8) - vec2(0.5);
     vec2 base = floor(at);
-    vec2 share = (at - base);
+    vec2 share = at - base;
     vec2 _e15 = irradia_probe_seen(probe, base);
     vec2 _e20 = irradia_probe_seen(probe, (base + vec2(1.0, 0.0)));
     vec2 up = mix(_e15, _e20, share.x);
     vec2 _e27 = irradia_probe_seen(probe, (base + vec2(0.0, 1.0)));
     vec2 _e32 = irradia_probe_seen(probe, (base + vec2(1.0, 1.0)));
     vec2 down = mix(_e27, _e32, share.x);
-    vec2 seen = (mix(up, down, share.y) * reach);
+    vec2 seen = mix(up, down, share.y) * reach;
     float deviation = max(seen.y, (0.01 * reach));
-    float beyond = (max((distance_ - seen.x), 0.0) / deviation);
-    float bound = (1.0 / (1.0 + (beyond * beyond)));
-    return ((bound * bound) * bound);
+    float beyond = max((distance_ - seen.x), 0.0) / deviation;
+    float bound = 1.0 / (1.0 + (beyond * beyond));
+    return (bound * bound) * bound;
 }
 
 float irradia_probe_weight(uint probe, vec4 place, vec3 position, vec3 surface_normal, float on_surface) {
-    vec3 towards = (place.xyz - position);
-    float facing = (0.5 + ((0.5 * dot(towards, surface_normal)) / max(length(towards), 1e-9)));
+    vec3 towards = place.xyz - position;
+    float facing = 0.5 + ((0.5 * dot(towards, surface_normal)) / max(length(towards), 1e-9));
     float side = mix(1.0, ((facing * facing) + 0.2), on_surface);
-    vec3 way = ((surface_normal * ((0.025 * place.w) * on_surface)) - towards);
+    vec3 way = (surface_normal * ((0.025 * place.w) * on_surface)) - towards;
     float distance = length(way);
-    vec3 direction = ((distance > 1e-9) ? (way / vec3(max(distance, 1e-9))) : vec3(0.0, 1.0, 0.0));
+    vec3 direction = (distance > 1e-9) ? (way / vec3(max(distance, 1e-9))) : vec3(0.0, 1.0, 0.0);
     float _e40 = irradia_probe_sees(probe, direction, distance, place.w);
-    float crushed = ((_e40 < 0.2) ? (((_e40 * _e40) * _e40) / 0.04) : _e40);
-    return (side * max(crushed, 1e-6));
+    float crushed = (_e40 < 0.2) ? (((_e40 * _e40) * _e40) / 0.04) : _e40;
+    return side * max(crushed, 1e-6);
 }
 
 vec3 irradia_probe_irradiance(uint probe, vec3 n) {
@@ -92,27 +90,18 @@ vec3 irradia_probe_irradiance(uint probe, vec3 n) {
     vec2 dy = unpackHalf2x16(_e21.y);
     vec4 _e50 = irradia_lobe_linear(n);
     vec4 _e51 = irradia_lobe_quadratic(n);
-    e = (_e50.x * vec3(ax, ay.x));
-    vec3 _e57 = e;
-    e = (_e57 + (_e50.y * vec3(ay.y, az)));
-    vec3 _e63 = e;
-    e = (_e63 + (_e50.z * vec3(aw, bx.x)));
-    vec3 _e69 = e;
-    e = (_e69 + (_e50.w * vec3(bx.y, by)));
-    vec3 _e75 = e;
-    e = (_e75 + (_e51.x * vec3(bz, bw.x)));
-    vec3 _e81 = e;
-    e = (_e81 + (_e51.y * vec3(bw.y, cx)));
-    vec3 _e87 = e;
-    e = (_e87 + (_e51.z * vec3(cy, cz.x)));
-    vec3 _e93 = e;
-    e = (_e93 + (_e51.w * vec3(cz.y, cw)));
-    vec3 _e99 = e;
+    e = _e50.x * vec3(ax, ay.x);
+    e = e + (_e50.y * vec3(ay.y, az));
+    e = e + (_e50.z * vec3(aw, bx.x));
+    e = e + (_e50.w * vec3(bx.y, by));
+    e = e + (_e51.x * vec3(bz, bw.x));
+    e = e + (_e51.y * vec3(bw.y, cx));
+    e = e + (_e51.z * vec3(cy, cz.x));
+    e = e + (_e51.w * vec3(cz.y, cw));
     float _e100 = irradia_lobe_squares(n);
-    e = (_e99 + (_e100 * vec3(dx, dy.x)));
-    vec3 _e105 = e;
+    e = e + (_e100 * vec3(dx, dy.x));
     float _e109 = irradia_probe_layout[4].x;
-    return (_e105 * _e109);
+    return e * _e109;
 }
 
 float irradia_probe_validity(uint probe) {

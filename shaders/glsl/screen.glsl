@@ -11,26 +11,19 @@ irradia_screen_Surface irradia_screen_seen(uvec2 pixel) {
 }
 
 vec3 irradia_screen_place(uvec2 pixel, float depth) {
-    vec4 _e4 = irradia_screen_view[0];
-    vec4 _e9 = irradia_screen_view[0];
-    vec2 slope = (_e4.xy + (vec2(pixel) * _e9.zw));
+    vec2 slope = irradia_screen_view[0].xy + (vec2(pixel) * irradia_screen_view[0].zw);
     float _e16 = irradia_screen_view[1].x;
-    vec2 across = (slope * mix(depth, 1.0, _e16));
-    vec4 _e22 = irradia_screen_view[2];
-    vec4 _e28 = irradia_screen_view[3];
-    vec4 _e35 = irradia_screen_view[4];
-    vec4 _e41 = irradia_screen_view[5];
-    return ((((_e22.xyz * across.x) + (_e28.xyz * across.y)) - (_e35.xyz * depth)) + _e41.xyz);
+    vec2 across = slope * mix(depth, 1.0, _e16);
+    return (((irradia_screen_view[2].xyz * across.x) + (irradia_screen_view[3].xyz * across.y)) - (irradia_screen_view[4].xyz * depth)) + irradia_screen_view[5].xyz;
 }
 
 uvec2 irradia_screen_sample(uvec2 cell) {
-    vec4 _e5 = irradia_screen_view[1];
-    return min((2u * cell), (uvec2(_e5.zw) - uvec2(1u, 1u)));
+    return min((2u * cell), (uvec2(irradia_screen_view[1].zw) - uvec2(1u, 1u)));
 }
 
 vec3 irradia_screen_irradiance(uvec2 pixel) {
     irradia_screen_Surface _e1 = irradia_screen_seen(pixel);
-    if ((_e1.depth <= 0.0)) {
+    if (_e1.depth <= 0.0) {
         return vec3(0.0);
     }
     vec3 _e8 = irradia_screen_place(pixel, _e1.depth);

@@ -5,10 +5,8 @@ vec2 irradia_table_sums[4] = vec2[4](vec2(0.0), vec2(0.0), vec2(0.0), vec2(0.0))
 
 void irradia_table_clear() {
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
-        uint _e6 = i;
-        irradia_table_sums[_e6] = vec2(0.0);
+        irradia_table_sums[i] = vec2(0.0);
     }
-    return;
 }
 
 float irradia_table_scale(uint first, uint block) {
@@ -17,28 +15,20 @@ float irradia_table_scale(uint first, uint block) {
 
 void irradia_table_add(uvec4 words, float weight) {
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
-        uint _e8 = i;
-        vec2 _e10 = irradia_table_sums[_e8];
-        uint _e11 = i;
-        irradia_table_sums[_e8] = (_e10 + (weight * unpackHalf2x16(words[_e11])));
+        irradia_table_sums[i] = irradia_table_sums[i] + (weight * unpackHalf2x16(words[i]));
     }
-    return;
 }
 
 void irradia_table_push(uint column, uint count) {
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
-        uint _e8 = i;
-        uint first = (2u * _e8);
-        if ((first < count)) {
-            uint _e13 = i;
-            float _e16 = irradia_table_sums[_e13].x;
+        uint first = 2u * i;
+        if (first < count) {
+            float _e16 = irradia_table_sums[i].x;
             irradia_push((column + first), _e16);
         }
-        if (((first + 1u) < count)) {
-            uint _e24 = i;
-            float _e27 = irradia_table_sums[_e24].y;
+        if ((first + 1u) < count) {
+            float _e27 = irradia_table_sums[i].y;
             irradia_push(((column + first) + 1u), _e27);
         }
     }
-    return;
 }

@@ -5,7 +5,6 @@ vec4 irradia_table_sums = vec4(0.0);
 
 void irradia_table_clear() {
     irradia_table_sums = vec4(0.0);
-    return;
 }
 
 float irradia_table_scale(uint first, uint block) {
@@ -13,20 +12,14 @@ float irradia_table_scale(uint first, uint block) {
 }
 
 void irradia_table_add(uvec4 words, float weight) {
-    vec4 _e3 = irradia_table_sums;
-    irradia_table_sums = (_e3 + (weight * uintBitsToFloat(words)));
-    return;
+    irradia_table_sums = irradia_table_sums + (weight * uintBitsToFloat(words));
 }
 
 void irradia_table_push(uint column, uint count) {
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
-        uint _e7 = i;
-        if ((_e7 < count)) {
-            uint _e9 = i;
-            uint _e12 = i;
-            float _e14 = irradia_table_sums[_e12];
-            irradia_push((column + _e9), _e14);
+        if (i < count) {
+            float _e14 = irradia_table_sums[i];
+            irradia_push((column + i), _e14);
         }
     }
-    return;
 }

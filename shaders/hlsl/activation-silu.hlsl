@@ -2,5 +2,5 @@
 
 float4 irradia_activation(float4 z)
 {
-    return (z / ((1.0).xxxx + exp(min(-(z), (80.0).xxxx))));
+    return z / ((1.0).xxxx + exp(min(-(z), (80.0).xxxx)));
 }

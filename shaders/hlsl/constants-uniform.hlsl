@@ -3,6 +3,5 @@
 
 float4 irradia_constant(uint at)
 {
-    float4 _e3 = irradia_constants[at];
-    return _e3;
+    return irradia_constants[at];
 }

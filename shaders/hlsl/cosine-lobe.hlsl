@@ -12,5 +12,5 @@ float4 irradia_lobe_quadratic(float3 n)
 
 float irradia_lobe_squares(float3 n)
 {
-    return (0.42904276 * ((n.x * n.x) - (n.y * n.y)));
+    return 0.42904276 * ((n.x * n.x) - (n.y * n.y));
 }

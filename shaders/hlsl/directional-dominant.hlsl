@@ -4,5 +4,5 @@ float irradia_dominant_share(float3 direction, float3 normal, float3 surface_nor
 {
     float lit_ = max((0.5 + (0.5 * dot(normal, direction))), 0.0);
     float own = max((0.5 + (0.5 * dot(surface_normal, direction))), 0.0001);
-    return (lit_ / own);
+    return lit_ / own;
 }

@@ -2,7 +2,7 @@
 
 float irradia_mono_lobe(float3 direction, float3 normal, float3 surface_normal)
 {
-    float t = (2.0 * dot(direction, normal));
+    float t = 2.0 * dot(direction, normal);
     float r = min(length(direction), 1.0);
     float cosine = dot(normal, surface_normal);
     float bent = max((1.0 - (cosine * cosine)), 0.0);

@@ -8,8 +8,7 @@
 float3 irradia_light(float3 normal, float3 surface_normal, float4 tangent, float2 lightmap_uv, float page)
 {
     const float3 _e5 = irradia_rnm_weights(normal, surface_normal, tangent);
-    float4 _e8 = irradia_map_scales[0];
-    float3 weights = (_e5 * _e8.xyz);
+    float3 weights = _e5 * irradia_map_scales[0].xyz;
     const float4 _e11 = irradia_rnm_a_sample(lightmap_uv, page);
     float3 a = _e11.xyz;
     const float4 _e13 = irradia_rnm_b_sample(lightmap_uv, page);

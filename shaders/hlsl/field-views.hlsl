@@ -11,9 +11,8 @@ float3 irradia_view_raw(float3 position, float3 normal)
 float3 irradia_view_hidden(float3 position, float3 normal)
 {
     irradia_run(position, normal);
-    float4 _e4 = irradia_units[0];
-    float3 units = _e4.xyz;
-    return ((0.5).xxx + ((0.5 * units) / ((1.0).xxx + abs(units))));
+    float3 units = irradia_units[0].xyz;
+    return (0.5).xxx + ((0.5 * units) / ((1.0).xxx + abs(units)));
 }
 
 float3 irradia_view_position(float3 position, float3 normal)

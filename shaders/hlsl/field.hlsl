@@ -6,7 +6,7 @@ float3 irradia_unit_position(float3 position)
 {
     const float4 _e2 = irradia_constant(0u);
     const float4 _e6 = irradia_constant(1u);
-    float3 x = ((position - _e2.xyz) / _e6.xyz);
+    float3 x = (position - _e2.xyz) / _e6.xyz;
     return clamp(x, (0.0).xxx, (1.0).xxx);
 }
 
@@ -16,5 +16,4 @@ void irradia_run(float3 position, float3 normal)
     const float3 _e2 = irradia_unit_position(position);
     irradia_encode(_e2, normal);
     irradia_hidden_layers();
-    return;
 }

@@ -3,24 +3,24 @@
 
 uint irradia_table_corner(uint3 corner, uint resolution, uint kind, uint n_entries, uint3 primes)
 {
-    if ((kind == 0u)) {
-        uint entry = (corner.x + (resolution * (corner.y + (resolution * corner.z))));
-        return ((entry >= n_entries) ? (entry - n_entries) : entry);
+    if (kind == 0u) {
+        uint entry = corner.x + (resolution * (corner.y + (resolution * corner.z)));
+        return (entry >= n_entries) ? (entry - n_entries) : entry;
     }
-    uint3 hashed = (corner * primes);
-    uint hash = ((hashed.x ^ hashed.y) ^ hashed.z);
-    if ((kind == 1u)) {
-        return (hash & (n_entries - 1u));
+    uint3 hashed = corner * primes;
+    uint hash = (hashed.x ^ hashed.y) ^ hashed.z;
+    if (kind == 1u) {
+        return hash & (n_entries - 1u);
     }
     return naga_mod(hash, n_entries);
 }
 
 uint4 irradia_table_entry(uint first_texel, uint entry, uint part, uint4 shape)
 {
-    uint texel = ((first_texel + ((entry >> shape.z) << shape.w)) + part);
-    uint row = (texel >> shape.x);
+    uint texel = (first_texel + ((entry >> shape.z) << shape.w)) + part;
+    uint row = texel >> shape.x;
     uint3 at = uint3((texel & ((1u << shape.x) - 1u)), (row & ((1u << shape.y) - 1u)), (row >> shape.y));
-    uint shift = ((entry & ((1u << shape.z) - 1u)) * (32u >> shape.z));
+    uint shift = (entry & ((1u << shape.z) - 1u)) * (32u >> shape.z);
     const uint4 _e37 = irradia_table_texel(at, shift);
     return _e37;
 }
@@ -40,46 +40,33 @@ void irradia_table_hash_grid(uint record, float3 unit)
     const float4 _e17 = irradia_constant((record + 3u));
     const uint _e19 = irradia_whole(_e17.xy);
     uint3 primes = uint3(_e12, _e14, _e19);
-    uint n_parts = (1u << shape.w);
+    uint n_parts = 1u << shape.w;
     column = grid.x;
-    at = (record + 4u);
+    at = record + 4u;
     for (uint level = 0u; level < grid.y; level += 1u) {
-        uint _e34 = at;
-        const float4 _e35 = irradia_constant(_e34);
-        uint _e36 = at;
-        const float4 _e39 = irradia_constant((_e36 + 1u));
-        uint _e40 = at;
-        const float4 _e43 = irradia_constant((_e40 + 2u));
+        const float4 _e35 = irradia_constant(at);
+        const float4 _e39 = irradia_constant((at + 1u));
+        const float4 _e43 = irradia_constant((at + 2u));
         uint2 scales = naga_f2u32(_e43.xy);
         const uint _e47 = irradia_whole(_e39.xy);
         const uint _e49 = irradia_whole(_e39.zw);
-        float3 position = ((_e35.x * unit) + (_e35.y).xxx);
+        float3 position = (_e35.x * unit) + (_e35.y).xxx;
         float3 cell = floor(position);
-        float3 fraction = (position - cell);
+        float3 fraction = position - cell;
         for (uint part = 0u; part < n_parts; part += 1u) {
             irradia_table_clear();
             for (uint corner = 0u; corner < 8u; corner += 1u) {
-                uint _e66 = corner;
-                uint _e69 = corner;
-                uint _e74 = corner;
-                uint3 far = uint3((_e66 & 1u), ((_e69 >> 1u) & 1u), (_e74 >> 2u));
-                float3 side = ((far == (1u).xxx) ? fraction : ((1.0).xxx - fraction));
+                uint3 far = uint3((corner & 1u), ((corner >> 1u) & 1u), (corner >> 2u));
+                float3 side = (far == (1u).xxx) ? fraction : ((1.0).xxx - fraction);
                 const uint _e91 = irradia_table_corner((naga_f2u32(cell) + far), naga_f2u32(_e35.z), naga_f2u32(_e35.w), _e49, primes);
                 const float _e100 = irradia_table_scale(scales.x, (_e91 >> scales.y));
-                float weight = (((side.x * side.y) * side.z) * _e100);
-                uint _e102 = part;
-                const uint4 _e103 = irradia_table_entry(_e47, _e91, _e102, shape);
+                float weight = ((side.x * side.y) * side.z) * _e100;
+                const uint4 _e103 = irradia_table_entry(_e47, _e91, part, shape);
                 irradia_table_add(_e103, weight);
             }
-            uint _e107 = column;
-            uint _e108 = part;
-            uint _e113 = part;
-            irradia_table_push((_e107 + (_e108 * grid.w)), (grid.z - (_e113 * grid.w)));
+            irradia_table_push((column + (part * grid.w)), (grid.z - (part * grid.w)));
         }
-        uint _e120 = column;
-        column = (_e120 + grid.z);
-        uint _e123 = at;
-        at = (_e123 + 3u);
+        column = column + grid.z;
+        at = at + 3u;
     }
-    return;
 }

@@ -3,7 +3,7 @@
 float3 irradia_head(float3 z)
 {
     float3 e = exp(-(abs(z)));
-    return (max(z, (0.0).xxx) + ((e < (0.001).xxx) ? (e - ((0.5 * e) * e)) : log(((1.0).xxx + e))));
+    return max(z, (0.0).xxx) + ((e < (0.001).xxx) ? (e - ((0.5 * e) * e)) : log(((1.0).xxx + e)));
 }
 
 float3 irradia_head_unclamped(float3 z)

@@ -8,5 +8,4 @@ void irradia_identity(uint record, float3 x)
     irradia_push(column, x.x);
     irradia_push((column + 1u), x.y);
     irradia_push((column + 2u), x.z);
-    return;
 }

@@ -2,5 +2,5 @@
 
 uint irradia_whole(float2 parts)
 {
-    return (naga_f2u32(parts.x) | (naga_f2u32(parts.y) << 16u));
+    return naga_f2u32(parts.x) | (naga_f2u32(parts.y) << 16u);
 }

@@ -5,11 +5,10 @@
 
 uint irradia_probe_cell_word(uint index)
 {
-    float4 _e3 = irradia_probe_layout[4];
-    uint2 shifts = naga_f2u32(_e3.zw);
-    uint x_1 = (index & ((1u << shifts.x) - 1u));
-    uint row = (index >> shifts.x);
-    uint y_1 = (row & ((1u << shifts.y) - 1u));
+    uint2 shifts = naga_f2u32(irradia_probe_layout[4].zw);
+    uint x_1 = index & ((1u << shifts.x) - 1u);
+    uint row = index >> shifts.x;
+    uint y_1 = row & ((1u << shifts.y) - 1u);
     uint4 _e27 = irradia_probe_cells.Load(int4(int2(uint2(x_1, y_1)), int((row >> shifts.y)), int(0)));
     return _e27.x;
 }
@@ -20,59 +19,36 @@ float4 irradia_probe_cell(float3 position)
     uint word = (uint)0;
     float3 share = (float3)0;
 
-    float4 _e3 = irradia_probe_layout[2];
-    float3 shape = _e3.xyz;
-    float4 _e7 = irradia_probe_layout[0];
-    float4 _e12 = irradia_probe_layout[1];
-    float3 at = ((position - _e7.xyz) / _e12.xyz);
+    float3 shape = irradia_probe_layout[2].xyz;
+    float3 at = (position - irradia_probe_layout[0].xyz) / irradia_probe_layout[1].xyz;
     low = clamp(floor(at), (0.0).xxx, (shape - (1.0).xxx));
-    float _e24 = low.x;
-    float _e27 = low.y;
-    float _e30 = low.z;
-    const uint _e36 = irradia_probe_cell_word(naga_f2u32((_e24 + (shape.x * (_e27 + (shape.y * _e30))))));
+    const uint _e36 = irradia_probe_cell_word(naga_f2u32((low.x + (shape.x * (low.y + (shape.y * low.z))))));
     word = _e36;
     uint _e38 = word;
-    if (((_e38 >> 30u) == 2u)) {
-        uint _e43 = word;
-        uint _e46 = word;
-        uint _e51 = word;
-        low = float3(uint3((_e43 & 1023u), ((_e46 >> 10u) & 1023u), ((_e51 >> 20u) & 1023u)));
-        float _e59 = low.x;
-        float _e62 = low.y;
-        float _e65 = low.z;
-        const uint _e71 = irradia_probe_cell_word(naga_f2u32((_e59 + (shape.x * (_e62 + (shape.y * _e65))))));
+    if ((_e38 >> 30u) == 2u) {
+        low = float3(uint3((word & 1023u), ((word >> 10u) & 1023u), ((word >> 20u) & 1023u)));
+        const uint _e71 = irradia_probe_cell_word(naga_f2u32((low.x + (shape.x * (low.y + (shape.y * low.z))))));
         word = _e71;
     }
-    float3 _e72 = low;
-    share = clamp((at - _e72), (0.0).xxx, (1.0).xxx);
+    share = clamp((at - low), (0.0).xxx, (1.0).xxx);
     for (uint level = 0u; level < 15u; level += 1u) {
-        uint _e85 = word;
-        if (((_e85 >> 30u) != 0u)) {
+        if ((word >> 30u) != 0u) {
             break;
         }
         uint first = word;
-        float3 _e91 = share;
-        low = min(floor((2.0 * _e91)), (1.0).xxx);
-        float _e99 = low.x;
-        float _e101 = low.y;
-        float _e106 = low.z;
-        const uint _e112 = irradia_probe_cell_word((first + naga_f2u32(((_e99 + (2.0 * _e101)) + (4.0 * _e106)))));
+        low = min(floor((2.0 * share)), (1.0).xxx);
+        const uint _e112 = irradia_probe_cell_word((first + naga_f2u32(((low.x + (2.0 * low.y)) + (4.0 * low.z)))));
         word = _e112;
         uint _e113 = word;
-        if (((_e113 >> 30u) == 2u)) {
-            uint _e118 = word;
-            uint child = (_e118 & 7u);
+        if ((_e113 >> 30u) == 2u) {
+            uint child = word & 7u;
             low = float3(uint3((child & 1u), ((child >> 1u) & 1u), (child >> 2u)));
             const uint _e132 = irradia_probe_cell_word((first + child));
             word = _e132;
         }
-        float3 _e133 = share;
-        float3 _e136 = low;
-        share = clamp(((2.0 * _e133) - _e136), (0.0).xxx, (1.0).xxx);
+        share = clamp(((2.0 * share) - low), (0.0).xxx, (1.0).xxx);
     }
-    float3 _e146 = share;
-    uint _e147 = word;
-    return float4(_e146, float((_e147 & 1073741823u)));
+    return float4(share, float((word & 1073741823u)));
 }
 
 uint irradia_probe_corner(float cell, uint corner)

@@ -5,8 +5,8 @@
 float irradia_probe_share(float3 share, uint corner)
 {
     bool3 high = bool3(((corner & 1u) != 0u), ((corner & 2u) != 0u), ((corner & 4u) != 0u));
-    float3 along = (high ? share : ((1.0).xxx - share));
-    return ((along.x * along.y) * along.z);
+    float3 along = high ? share : ((1.0).xxx - share);
+    return (along.x * along.y) * along.z;
 }
 
 float3 irradia_light(float3 position, float3 normal, float3 surface_normal)
@@ -18,32 +18,25 @@ float3 irradia_light(float3 position, float3 normal, float3 surface_normal)
     const float4 _e3 = irradia_probe_cell(position);
     float on_surface = irradia_probe_layout[1].w;
     for (uint corner = 0u; corner < 8u; corner += 1u) {
-        uint _e19 = corner;
-        const float _e20 = irradia_probe_share(_e3.xyz, _e19);
-        uint _e22 = corner;
-        const uint _e23 = irradia_probe_corner(_e3.w, _e22);
-        if ((_e20 > 0.0)) {
-            local = (_e23 != 4294967295u);
+        const float _e20 = irradia_probe_share(_e3.xyz, corner);
+        const uint _e23 = irradia_probe_corner(_e3.w, corner);
+        if (_e20 > 0.0) {
+            local = _e23 != 4294967295u;
         } else {
             local = false;
         }
-        bool _e31 = local;
-        if (_e31) {
+        if (local) {
             const float4 _e32 = irradia_probe_place(_e23);
-            if ((_e32.w > 0.0)) {
+            if (_e32.w > 0.0) {
                 const float _e36 = irradia_probe_weight(_e23, _e32, position, surface_normal, on_surface);
-                float weight = (_e20 * _e36);
-                float3 _e38 = light;
+                float weight = _e20 * _e36;
                 const float3 _e39 = irradia_probe_irradiance(_e23, normal);
-                light = (_e38 + (weight * _e39));
-                float _e42 = total;
-                total = (_e42 + weight);
+                light = light + (weight * _e39);
+                total = total + weight;
             }
         }
     }
-    float3 _e47 = light;
-    float _e48 = total;
-    return max((_e47 / (max(_e48, 1e-30)).xxx), (0.0).xxx);
+    return max((light / (max(total, 1e-30)).xxx), (0.0).xxx);
 }
 
 float3 irradia_view_validity(float3 position, float3 normal, float3 surface_normal)
@@ -53,19 +46,13 @@ float3 irradia_view_validity(float3 position, float3 normal, float3 surface_norm
 
     const float4 _e3 = irradia_probe_cell(position);
     for (uint corner = 0u; corner < 8u; corner += 1u) {
-        uint _e14 = corner;
-        const float _e15 = irradia_probe_share(_e3.xyz, _e14);
-        uint _e17 = corner;
-        const uint _e18 = irradia_probe_corner(_e3.w, _e17);
-        if ((_e18 != 4294967295u)) {
-            float _e21 = validity;
+        const float _e15 = irradia_probe_share(_e3.xyz, corner);
+        const uint _e18 = irradia_probe_corner(_e3.w, corner);
+        if (_e18 != 4294967295u) {
             const float _e22 = irradia_probe_validity(_e18);
-            validity = (_e21 + (_e15 * _e22));
-            float _e25 = total;
-            total = (_e25 + _e15);
+            validity = validity + (_e15 * _e22);
+            total = total + _e15;
         }
     }
-    float _e30 = validity;
-    float _e31 = total;
-    return ((_e30 / max(_e31, 1e-30))).xxx;
+    return ((validity / max(total, 1e-30))).xxx;
 }

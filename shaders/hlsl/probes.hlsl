@@ -6,11 +6,10 @@
 
 uint4 irradia_probe_texel(uint index)
 {
-    float4 _e3 = irradia_probe_layout[3];
-    uint2 shifts = naga_f2u32(_e3.xy);
-    uint x = (index & ((1u << shifts.x) - 1u));
-    uint row = (index >> shifts.x);
-    uint y = (row & ((1u << shifts.y) - 1u));
+    uint2 shifts = naga_f2u32(irradia_probe_layout[3].xy);
+    uint x = index & ((1u << shifts.x) - 1u);
+    uint row = index >> shifts.x;
+    uint y = row & ((1u << shifts.y) - 1u);
     uint4 _e27 = irradia_probes.Load(int4(int2(uint2(x, y)), int((row >> shifts.y)), int(0)));
     return _e27;
 }
@@ -23,11 +22,10 @@ float4 irradia_probe_place(uint probe)
 
 uint irradia_probe_word(uint index)
 {
-    float4 _e3 = irradia_probe_layout[3];
-    uint2 shifts = naga_f2u32(_e3.zw);
-    uint x_1 = (index & ((1u << shifts.x) - 1u));
-    uint row = (index >> shifts.x);
-    uint y_1 = (row & ((1u << shifts.y) - 1u));
+    uint2 shifts = naga_f2u32(irradia_probe_layout[3].zw);
+    uint x_1 = index & ((1u << shifts.x) - 1u);
+    uint row = index >> shifts.x;
+    uint y_1 = row & ((1u << shifts.y) - 1u);
     uint4 _e27 = irradia_probe_sight.Load(int4(int2(uint2(x_1, y_1)), int((row >> shifts.y)), int(0)));
     return _e27.x;
 }
@@ -39,41 +37,41 @@ float2 irradia_probe_seen(uint probe, float2 place)
     float _e10 = irradia_probe_layout[4].y;
     uint words = naga_f2u32(_e10);
     const uint _e16 = irradia_probe_word(((probe * words) + (_e6 >> 1u)));
-    uint pair = (_e16 >> (16u * (_e6 & 1u)));
-    return (float2(uint2((pair & 255u), ((pair >> 8u) & 255u))) / (255.0).xx);
+    uint pair = _e16 >> (16u * (_e6 & 1u));
+    return float2(uint2((pair & 255u), ((pair >> 8u) & 255u))) / (255.0).xx;
 }
 
 float irradia_probe_sees(uint probe, float3 direction, float distance_, float reach)
 {
     const float2 _e4 = irradia_octahedral_uv(direction);
     float _e8 = irradia_probe_layout[2].w;
-    float2 at = ((_e4 * _e8) - (0.5).xx);
+    float2 at = (_e4 * _e8) - (0.5).xx;
     float2 base = floor(at);
-    float2 share = (at - base);
+    float2 share = at - base;
     const float2 _e15 = irradia_probe_seen(probe, base);
     const float2 _e20 = irradia_probe_seen(probe, (base + float2(1.0, 0.0)));
     float2 up = lerp(_e15, _e20, share.x);
     const float2 _e27 = irradia_probe_seen(probe, (base + float2(0.0, 1.0)));
     const float2 _e32 = irradia_probe_seen(probe, (base + float2(1.0, 1.0)));
     float2 down = lerp(_e27, _e32, share.x);
-    float2 seen = (lerp(up, down, share.y) * reach);
+    float2 seen = lerp(up, down, share.y) * reach;
     float deviation = max(seen.y, (0.01 * reach));
-    float beyond = (max((distance_ - seen.x), 0.0) / deviation);
-    float bound = (1.0 / (1.0 + (beyond * beyond)));
-    return ((bound * bound) * bound);
+    float beyond = max((distance_ - seen.x), 0.0) / deviation;
+    float bound = 1.0 / (1.0 + (beyond * beyond));
+    return (bound * bound) * bound;
 }
 
 float irradia_probe_weight(uint probe, float4 place, float3 position, float3 surface_normal, float on_surface)
 {
-    float3 towards = (place.xyz - position);
-    float facing = (0.5 + ((0.5 * dot(towards, surface_normal)) / max(length(towards), 1e-9)));
+    float3 towards = place.xyz - position;
+    float facing = 0.5 + ((0.5 * dot(towards, surface_normal)) / max(length(towards), 1e-9));
     float side = lerp(1.0, ((facing * facing) + 0.2), on_surface);
-    float3 way = ((surface_normal * ((0.025 * place.w) * on_surface)) - towards);
+    float3 way = (surface_normal * ((0.025 * place.w) * on_surface)) - towards;
     float distance = length(way);
-    float3 direction = ((distance > 1e-9) ? (way / (max(distance, 1e-9)).xxx) : float3(0.0, 1.0, 0.0));
+    float3 direction = (distance > 1e-9) ? (way / (max(distance, 1e-9)).xxx) : float3(0.0, 1.0, 0.0);
     const float _e40 = irradia_probe_sees(probe, direction, distance, place.w);
-    float crushed = ((_e40 < 0.2) ? (((_e40 * _e40) * _e40) / 0.04) : _e40);
-    return (side * max(crushed, 1e-6));
+    float crushed = (_e40 < 0.2) ? (((_e40 * _e40) * _e40) / 0.04) : _e40;
+    return side * max(crushed, 1e-6);
 }
 
 float3 irradia_probe_irradiance(uint probe, float3 n)
@@ -84,57 +82,34 @@ float3 irradia_probe_irradiance(uint probe, float3 n)
     const uint4 _e11 = irradia_probe_texel(((5u * probe) + 2u));
     const uint4 _e16 = irradia_probe_texel(((5u * probe) + 3u));
     const uint4 _e21 = irradia_probe_texel(((5u * probe) + 4u));
-    uint _e22 = _e6.x;
-    float2 ax = float2(f16tof32(_e22), f16tof32((_e22) >> 16));
-    uint _e24 = _e6.y;
-    float2 ay = float2(f16tof32(_e24), f16tof32((_e24) >> 16));
-    uint _e26 = _e6.z;
-    float2 az = float2(f16tof32(_e26), f16tof32((_e26) >> 16));
-    uint _e28 = _e6.w;
-    float2 aw = float2(f16tof32(_e28), f16tof32((_e28) >> 16));
-    uint _e30 = _e11.x;
-    float2 bx = float2(f16tof32(_e30), f16tof32((_e30) >> 16));
-    uint _e32 = _e11.y;
-    float2 by = float2(f16tof32(_e32), f16tof32((_e32) >> 16));
-    uint _e34 = _e11.z;
-    float2 bz = float2(f16tof32(_e34), f16tof32((_e34) >> 16));
-    uint _e36 = _e11.w;
-    float2 bw = float2(f16tof32(_e36), f16tof32((_e36) >> 16));
-    uint _e38 = _e16.x;
-    float2 cx = float2(f16tof32(_e38), f16tof32((_e38) >> 16));
-    uint _e40 = _e16.y;
-    float2 cy = float2(f16tof32(_e40), f16tof32((_e40) >> 16));
-    uint _e42 = _e16.z;
-    float2 cz = float2(f16tof32(_e42), f16tof32((_e42) >> 16));
-    uint _e44 = _e16.w;
-    float2 cw = float2(f16tof32(_e44), f16tof32((_e44) >> 16));
-    uint _e46 = _e21.x;
-    float2 dx = float2(f16tof32(_e46), f16tof32((_e46) >> 16));
-    uint _e48 = _e21.y;
-    float2 dy = float2(f16tof32(_e48), f16tof32((_e48) >> 16));
+    float2 ax = float2(f16tof32(_e6.x), f16tof32((_e6.x) >> 16));
+    float2 ay = float2(f16tof32(_e6.y), f16tof32((_e6.y) >> 16));
+    float2 az = float2(f16tof32(_e6.z), f16tof32((_e6.z) >> 16));
+    float2 aw = float2(f16tof32(_e6.w), f16tof32((_e6.w) >> 16));
+    float2 bx = float2(f16tof32(_e11.x), f16tof32((_e11.x) >> 16));
+    float2 by = float2(f16tof32(_e11.y), f16tof32((_e11.y) >> 16));
+    float2 bz = float2(f16tof32(_e11.z), f16tof32((_e11.z) >> 16));
+    float2 bw = float2(f16tof32(_e11.w), f16tof32((_e11.w) >> 16));
+    float2 cx = float2(f16tof32(_e16.x), f16tof32((_e16.x) >> 16));
+    float2 cy = float2(f16tof32(_e16.y), f16tof32((_e16.y) >> 16));
+    float2 cz = float2(f16tof32(_e16.z), f16tof32((_e16.z) >> 16));
+    float2 cw = float2(f16tof32(_e16.w), f16tof32((_e16.w) >> 16));
+    float2 dx = float2(f16tof32(_e21.x), f16tof32((_e21.x) >> 16));
+    float2 dy = float2(f16tof32(_e21.y), f16tof32((_e21.y) >> 16));
     const float4 _e50 = irradia_lobe_linear(n);
     const float4 _e51 = irradia_lobe_quadratic(n);
-    e = (_e50.x * float3(ax, ay.x));
-    float3 _e57 = e;
-    e = (_e57 + (_e50.y * float3(ay.y, az)));
-    float3 _e63 = e;
-    e = (_e63 + (_e50.z * float3(aw, bx.x)));
-    float3 _e69 = e;
-    e = (_e69 + (_e50.w * float3(bx.y, by)));
-    float3 _e75 = e;
-    e = (_e75 + (_e51.x * float3(bz, bw.x)));
-    float3 _e81 = e;
-    e = (_e81 + (_e51.y * float3(bw.y, cx)));
-    float3 _e87 = e;
-    e = (_e87 + (_e51.z * float3(cy, cz.x)));
-    float3 _e93 = e;
-    e = (_e93 + (_e51.w * float3(cz.y, cw)));
-    float3 _e99 = e;
+    e = _e50.x * float3(ax, ay.x);
+    e = e + (_e50.y * float3(ay.y, az));
+    e = e + (_e50.z * float3(aw, bx.x));
+    e = e + (_e50.w * float3(bx.y, by));
+    e = e + (_e51.x * float3(bz, bw.x));
+    e = e + (_e51.y * float3(bw.y, cx));
+    e = e + (_e51.z * float3(cy, cz.x));
+    e = e + (_e51.w * float3(cz.y, cw));
     const float _e100 = irradia_lobe_squares(n);
-    e = (_e99 + (_e100 * float3(dx, dy.x)));
-    float3 _e105 = e;
+    e = e + (_e100 * float3(dx, dy.x));
     float _e109 = irradia_probe_layout[4].x;
-    return (_e105 * _e109);
+    return e * _e109;
 }
 
 float irradia_probe_validity(uint probe)

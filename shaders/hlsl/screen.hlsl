@@ -14,28 +14,21 @@ irradia_screen_Surface irradia_screen_seen(uint2 pixel)
 
 float3 irradia_screen_place(uint2 pixel, float depth)
 {
-    float4 _e4 = irradia_screen_view[0];
-    float4 _e9 = irradia_screen_view[0];
-    float2 slope = (_e4.xy + (float2(pixel) * _e9.zw));
+    float2 slope = irradia_screen_view[0].xy + (float2(pixel) * irradia_screen_view[0].zw);
     float _e16 = irradia_screen_view[1].x;
-    float2 across = (slope * lerp(depth, 1.0, _e16));
-    float4 _e22 = irradia_screen_view[2];
-    float4 _e28 = irradia_screen_view[3];
-    float4 _e35 = irradia_screen_view[4];
-    float4 _e41 = irradia_screen_view[5];
-    return ((((_e22.xyz * across.x) + (_e28.xyz * across.y)) - (_e35.xyz * depth)) + _e41.xyz);
+    float2 across = slope * lerp(depth, 1.0, _e16);
+    return (((irradia_screen_view[2].xyz * across.x) + (irradia_screen_view[3].xyz * across.y)) - (irradia_screen_view[4].xyz * depth)) + irradia_screen_view[5].xyz;
 }
 
 uint2 irradia_screen_sample(uint2 cell)
 {
-    float4 _e5 = irradia_screen_view[1];
-    return min((2u * cell), (naga_f2u32(_e5.zw) - uint2(1u, 1u)));
+    return min((2u * cell), (naga_f2u32(irradia_screen_view[1].zw) - uint2(1u, 1u)));
 }
 
 float3 irradia_screen_irradiance(uint2 pixel)
 {
     const irradia_screen_Surface _e1 = irradia_screen_seen(pixel);
-    if ((_e1.depth <= 0.0)) {
+    if (_e1.depth <= 0.0) {
         return (0.0).xxx;
     }
     const float3 _e8 = irradia_screen_place(pixel, _e1.depth);

@@ -5,12 +5,9 @@ static float2 irradia_table_sums[4] = (float2[4])0;
 
 void irradia_table_clear()
 {
-
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
-        uint _e6 = i;
-        irradia_table_sums[_e6] = (0.0).xx;
+        irradia_table_sums[i] = (0.0).xx;
     }
-    return;
 }
 
 float irradia_table_scale(uint first, uint block)
@@ -20,33 +17,22 @@ float irradia_table_scale(uint first, uint block)
 
 void irradia_table_add(uint4 words, float weight)
 {
-
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
-        uint _e8 = i;
-        float2 _e10 = irradia_table_sums[_e8];
-        uint _e11 = i;
-        uint _e12 = words[_e11];
-        irradia_table_sums[_e8] = (_e10 + (weight * float2(f16tof32(_e12), f16tof32((_e12) >> 16))));
+        irradia_table_sums[i] = irradia_table_sums[i] + (weight * float2(f16tof32(words[i]), f16tof32((words[i]) >> 16)));
     }
-    return;
 }
 
 void irradia_table_push(uint column, uint count)
 {
-
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
-        uint _e8 = i;
-        uint first = (2u * _e8);
-        if ((first < count)) {
-            uint _e13 = i;
-            float _e16 = irradia_table_sums[_e13].x;
+        uint first = 2u * i;
+        if (first < count) {
+            float _e16 = irradia_table_sums[i].x;
             irradia_push((column + first), _e16);
         }
-        if (((first + 1u) < count)) {
-            uint _e24 = i;
-            float _e27 = irradia_table_sums[_e24].y;
+        if ((first + 1u) < count) {
+            float _e27 = irradia_table_sums[i].y;
             irradia_push(((column + first) + 1u), _e27);
         }
     }
-    return;
 }

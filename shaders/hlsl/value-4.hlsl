@@ -7,14 +7,10 @@ static float4 irradia_table_upper[4] = (float4[4])0;
 
 void irradia_table_clear()
 {
-
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
-        uint _e6 = i;
-        irradia_table_lower[_e6] = (0.0).xxxx;
-        uint _e11 = i;
-        irradia_table_upper[_e11] = (0.0).xxxx;
+        irradia_table_lower[i] = (0.0).xxxx;
+        irradia_table_upper[i] = (0.0).xxxx;
     }
-    return;
 }
 
 float irradia_table_scale(uint first, uint block)
@@ -25,43 +21,27 @@ float irradia_table_scale(uint first, uint block)
 
 void irradia_table_add(uint4 words, float weight)
 {
-
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
-        uint _e7 = i;
-        uint4 lower = (((words[_e7]).xxxx >> uint4(0u, 4u, 8u, 12u)) & (15u).xxxx);
-        uint _e19 = i;
-        uint4 upper = (((words[_e19]).xxxx >> uint4(16u, 20u, 24u, 28u)) & (15u).xxxx);
-        uint _e32 = i;
-        float4 _e34 = irradia_table_lower[_e32];
-        irradia_table_lower[_e32] = (_e34 + (weight * (float4(lower) - (8.0).xxxx)));
-        uint _e42 = i;
-        float4 _e44 = irradia_table_upper[_e42];
-        irradia_table_upper[_e42] = (_e44 + (weight * (float4(upper) - (8.0).xxxx)));
+        uint4 lower = ((words[i]).xxxx >> uint4(0u, 4u, 8u, 12u)) & (15u).xxxx;
+        uint4 upper = ((words[i]).xxxx >> uint4(16u, 20u, 24u, 28u)) & (15u).xxxx;
+        irradia_table_lower[i] = irradia_table_lower[i] + (weight * (float4(lower) - (8.0).xxxx));
+        irradia_table_upper[i] = irradia_table_upper[i] + (weight * (float4(upper) - (8.0).xxxx));
     }
-    return;
 }
 
 void irradia_table_push(uint column, uint count)
 {
-
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
         for (uint j = 0u; j < 4u; j += 1u) {
-            uint _e13 = i;
-            uint _e15 = j;
-            uint feature = ((8u * _e13) + _e15);
-            if ((feature < count)) {
-                uint _e20 = i;
-                uint _e22 = j;
-                float _e24 = irradia_table_lower[_e20][_e22];
+            uint feature = (8u * i) + j;
+            if (feature < count) {
+                float _e24 = irradia_table_lower[i][j];
                 irradia_push((column + feature), _e24);
             }
-            if (((feature + 4u) < count)) {
-                uint _e32 = i;
-                uint _e34 = j;
-                float _e36 = irradia_table_upper[_e32][_e34];
+            if ((feature + 4u) < count) {
+                float _e36 = irradia_table_upper[i][j];
                 irradia_push(((column + feature) + 4u), _e36);
             }
         }
     }
-    return;
 }

@@ -19,5 +19,4 @@ void irradia_run(
     metal::float3 _e2 = irradia_unit_position(position);
     irradia_encode(_e2, normal);
     irradia_hidden_layers();
-    return;
 }

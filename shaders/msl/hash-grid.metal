@@ -54,12 +54,9 @@ void irradia_table_hash_grid(
     column = grid.x;
     at = record + 4u;
     for (uint level = 0u; level < grid.y; level += 1u) {
-        uint _e34 = at;
-        metal::float4 _e35 = irradia_constant(_e34);
-        uint _e36 = at;
-        metal::float4 _e39 = irradia_constant(_e36 + 1u);
-        uint _e40 = at;
-        metal::float4 _e43 = irradia_constant(_e40 + 2u);
+        metal::float4 _e35 = irradia_constant(at);
+        metal::float4 _e39 = irradia_constant(at + 1u);
+        metal::float4 _e43 = irradia_constant(at + 2u);
         metal::uint2 scales = naga_f2u32(_e43.xy);
         uint _e47 = irradia_whole(_e39.xy);
         uint _e49 = irradia_whole(_e39.zw);
@@ -69,27 +66,17 @@ void irradia_table_hash_grid(
         for (uint part = 0u; part < n_parts; part += 1u) {
             irradia_table_clear();
             for (uint corner = 0u; corner < 8u; corner += 1u) {
-                uint _e66 = corner;
-                uint _e69 = corner;
-                uint _e74 = corner;
-                metal::uint3 far = metal::uint3(_e66 & 1u, (_e69 >> 1u) & 1u, _e74 >> 2u);
+                metal::uint3 far = metal::uint3(corner & 1u, (corner >> 1u) & 1u, corner >> 2u);
                 metal::float3 side = metal::select(metal::float3(1.0) - fraction, fraction, far == metal::uint3(1u));
                 uint _e91 = irradia_table_corner(naga_f2u32(cell) + far, naga_f2u32(_e35.z), naga_f2u32(_e35.w), _e49, primes);
                 float _e100 = irradia_table_scale(scales.x, _e91 >> scales.y);
                 float weight = ((side.x * side.y) * side.z) * _e100;
-                uint _e102 = part;
-                metal::uint4 _e103 = irradia_table_entry(_e47, _e91, _e102, shape);
+                metal::uint4 _e103 = irradia_table_entry(_e47, _e91, part, shape);
                 irradia_table_add(_e103, weight);
             }
-            uint _e107 = column;
-            uint _e108 = part;
-            uint _e113 = part;
-            irradia_table_push(_e107 + (_e108 * grid.w), grid.z - (_e113 * grid.w));
+            irradia_table_push(column + (part * grid.w), grid.z - (part * grid.w));
         }
-        uint _e120 = column;
-        column = _e120 + grid.z;
-        uint _e123 = at;
-        at = _e123 + 3u;
+        column = column + grid.z;
+        at = at + 3u;
     }
-    return;
 }

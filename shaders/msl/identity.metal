@@ -10,5 +10,4 @@ void irradia_identity(
     irradia_push(column, x.x);
     irradia_push(column + 1u, x.y);
     irradia_push(column + 2u, x.z);
-    return;
 }

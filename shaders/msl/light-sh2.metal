@@ -10,30 +10,20 @@ metal::float3 irradia_view_unclamped(
     metal::float4 _e2 = irradia_lobe_linear(normal);
     metal::float4 _e3 = irradia_lobe_quadratic(normal);
     for (uint three = 0u; three < 6u; three += 3u) {
-        uint _e12 = three;
-        metal::float4 weights = (_e12 == 0u) ? _e2 : _e3;
-        uint _e16 = three;
-        metal::float4 _e17 = irradia_output(_e16);
-        uint _e18 = three;
-        metal::float4 _e21 = irradia_output(_e18 + 1u);
-        uint _e22 = three;
-        metal::float4 _e25 = irradia_output(_e22 + 2u);
-        metal::float3 _e26 = light;
-        light = _e26 + (weights.x * _e17.xyz);
-        metal::float3 _e31 = light;
-        light = _e31 + (weights.y * metal::float3(_e17.w, _e21.xy));
-        metal::float3 _e38 = light;
-        light = _e38 + (weights.z * metal::float3(_e21.zw, _e25.x));
-        metal::float3 _e45 = light;
-        light = _e45 + (weights.w * _e25.yzw);
+        metal::float4 weights = (three == 0u) ? _e2 : _e3;
+        metal::float4 _e17 = irradia_output(three);
+        metal::float4 _e21 = irradia_output(three + 1u);
+        metal::float4 _e25 = irradia_output(three + 2u);
+        light = light + (weights.x * _e17.xyz);
+        light = light + (weights.y * metal::float3(_e17.w, _e21.xy));
+        light = light + (weights.z * metal::float3(_e21.zw, _e25.x));
+        light = light + (weights.w * _e25.yzw);
     }
-    metal::float3 _e53 = light;
     float _e54 = irradia_lobe_squares(normal);
     metal::float4 _e56 = irradia_output(6u);
-    light = _e53 + (_e54 * _e56.xyz);
-    metal::float3 _e60 = light;
+    light = light + (_e54 * _e56.xyz);
     metal::float4 _e62 = irradia_constant(0u);
-    return _e60 * _e62.w;
+    return light * _e62.w;
 }
 
 metal::float3 irradia_light(

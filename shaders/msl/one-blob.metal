@@ -20,23 +20,15 @@ void irradia_one_blob(
     column = naga_f2u32(_e2.x);
     uint n_bins = naga_f2u32(_e2.y);
     for (uint axis = 0u; axis < 3u; axis += 1u) {
-        uint _e13 = axis;
-        edge = -(x[_e13]) * _e2.y;
-        float _e19 = edge;
-        float _e20 = irradia_blob_below(_e19);
+        edge = -(x[axis]) * _e2.y;
+        float _e20 = irradia_blob_below(edge);
         below = _e20;
         for (uint bin = 0u; bin < n_bins; bin += 1u) {
-            float _e26 = edge;
-            edge = _e26 + 1.0;
-            float _e29 = edge;
-            float _e30 = irradia_blob_below(_e29);
-            uint _e31 = column;
-            float _e32 = below;
-            irradia_push(_e31, _e30 - _e32);
+            edge = edge + 1.0;
+            float _e30 = irradia_blob_below(edge);
+            irradia_push(column, _e30 - below);
             below = _e30;
-            uint _e34 = column;
-            column = _e34 + 1u;
+            column = column + 1u;
         }
     }
-    return;
 }

@@ -8,29 +8,22 @@ void irradia_begin() {
     irradia_first_matrix = naga_f2u32(_e1.xy);
     uint biases = naga_f2u32(_e1.z);
     for (uint i = 0u; i < irradia_blocks; i += 1u) {
-        uint _e13 = i;
-        uint _e15 = i;
-        metal::float4 _e17 = irradia_constant(biases + _e15);
-        irradia_units[_e13] = _e17;
+        metal::float4 _e17 = irradia_constant(biases + i);
+        irradia_units[i] = _e17;
     }
-    return;
 }
 
 void irradia_push(
     uint column,
     float value
 ) {
-    uint _e4 = irradia_first_matrix.x;
-    uint first = _e4 + column;
+    uint first = irradia_first_matrix.x + column;
     uint stride = irradia_first_matrix.y;
     for (uint i = 0u; i < irradia_blocks; i += 1u) {
-        uint _e15 = i;
-        metal::float4 _e17 = irradia_units[_e15];
-        uint _e18 = i;
-        metal::float4 _e21 = irradia_constant(first + (_e18 * stride));
-        irradia_units[_e15] = _e17 + (value * _e21);
+        metal::float4 _e17 = irradia_units[i];
+        metal::float4 _e21 = irradia_constant(first + (i * stride));
+        irradia_units[i] = _e17 + (value * _e21);
     }
-    return;
 }
 
 metal::float4 irradia_row(
@@ -43,67 +36,45 @@ metal::float4 irradia_row(
     sum = _e2;
     at = weights;
     for (uint j = 0u; j < irradia_blocks; j += 1u) {
-        uint _e11 = j;
-        metal::float4 units = irradia_units[_e11];
-        metal::float4 _e14 = sum;
-        uint _e15 = at;
-        metal::float4 _e16 = irradia_constant(_e15);
-        sum = _e14 + (_e16 * units.x);
-        metal::float4 _e20 = sum;
-        uint _e21 = at;
-        metal::float4 _e24 = irradia_constant(_e21 + 1u);
-        sum = _e20 + (_e24 * units.y);
-        metal::float4 _e28 = sum;
-        uint _e29 = at;
-        metal::float4 _e32 = irradia_constant(_e29 + 2u);
-        sum = _e28 + (_e32 * units.z);
-        metal::float4 _e36 = sum;
-        uint _e37 = at;
-        metal::float4 _e40 = irradia_constant(_e37 + 3u);
-        sum = _e36 + (_e40 * units.w);
-        uint _e44 = at;
-        at = _e44 + 4u;
+        metal::float4 units = irradia_units[j];
+        metal::float4 _e16 = irradia_constant(at);
+        sum = sum + (_e16 * units.x);
+        metal::float4 _e24 = irradia_constant(at + 1u);
+        sum = sum + (_e24 * units.y);
+        metal::float4 _e32 = irradia_constant(at + 2u);
+        sum = sum + (_e32 * units.z);
+        metal::float4 _e40 = irradia_constant(at + 3u);
+        sum = sum + (_e40 * units.w);
+        at = at + 4u;
     }
-    metal::float4 _e50 = sum;
-    return _e50;
+    return sum;
 }
 
 void irradia_hidden_layers() {
     uint weights = {};
     for (uint i = 0u; i < irradia_blocks; i += 1u) {
-        uint _e6 = i;
-        uint _e9 = i;
-        metal::float4 _e11 = irradia_units[_e9];
+        metal::float4 _e11 = irradia_units[i];
         metal::float4 _e12 = irradia_activation(_e11);
-        irradia_units[_e6] = _e12;
+        irradia_units[i] = _e12;
     }
     metal::float4 _e17 = irradia_constant(1u);
     uint n_layers = naga_f2u32(_e17.w);
     metal::float4 _e21 = irradia_constant(2u);
     weights = naga_f2u32(_e21.w);
     for (uint layer = 1u; layer < n_layers; layer += 1u) {
-        uint _e29 = weights;
-        uint biases = _e29 + irradia_matrix;
+        uint biases = weights + irradia_matrix;
         for (uint i_1 = 0u; i_1 < irradia_blocks; i_1 += 1u) {
-            uint _e38 = i_1;
-            uint _e40 = weights;
-            uint _e41 = i_1;
-            metal::float4 _e43 = irradia_row(_e40, biases + _e41);
-            irradia_sums[_e38] = _e43;
-            uint _e44 = weights;
-            weights = _e44 + irradia_row_stride;
+            metal::float4 _e43 = irradia_row(weights, biases + i_1);
+            irradia_sums[i_1] = _e43;
+            weights = weights + irradia_row_stride;
         }
         for (uint i_4 = 0u; i_4 < irradia_blocks; i_4 += 1u) {
-            uint _e56 = i_4;
-            uint _e59 = i_4;
-            metal::float4 _e61 = irradia_sums[_e59];
+            metal::float4 _e61 = irradia_sums[i_4];
             metal::float4 _e62 = irradia_activation(_e61);
-            irradia_units[_e56] = _e62;
+            irradia_units[i_4] = _e62;
         }
-        uint _e66 = weights;
-        weights = _e66 + irradia_blocks;
+        weights = weights + irradia_blocks;
     }
-    return;
 }
 
 metal::float4 irradia_output(

@@ -27,53 +27,33 @@ metal::float4 irradia_probe_cell(
     metal::float4 _e12 = irradia_probe_layout[1];
     metal::float3 at = (position - _e7.xyz) / _e12.xyz;
     low = metal::clamp(metal::floor(at), metal::float3(0.0), shape - metal::float3(1.0));
-    float _e24 = low.x;
-    float _e27 = low.y;
-    float _e30 = low.z;
-    uint _e36 = irradia_probe_cell_word(naga_f2u32(_e24 + (shape.x * (_e27 + (shape.y * _e30)))));
+    uint _e36 = irradia_probe_cell_word(naga_f2u32(low.x + (shape.x * (low.y + (shape.y * low.z)))));
     word = _e36;
     uint _e38 = word;
     if ((_e38 >> 30u) == 2u) {
-        uint _e43 = word;
-        uint _e46 = word;
-        uint _e51 = word;
-        low = static_cast<metal::float3>(metal::uint3(_e43 & 1023u, (_e46 >> 10u) & 1023u, (_e51 >> 20u) & 1023u));
-        float _e59 = low.x;
-        float _e62 = low.y;
-        float _e65 = low.z;
-        uint _e71 = irradia_probe_cell_word(naga_f2u32(_e59 + (shape.x * (_e62 + (shape.y * _e65)))));
+        low = static_cast<metal::float3>(metal::uint3(word & 1023u, (word >> 10u) & 1023u, (word >> 20u) & 1023u));
+        uint _e71 = irradia_probe_cell_word(naga_f2u32(low.x + (shape.x * (low.y + (shape.y * low.z)))));
         word = _e71;
     }
-    metal::float3 _e72 = low;
-    share = metal::clamp(at - _e72, metal::float3(0.0), metal::float3(1.0));
+    share = metal::clamp(at - low, metal::float3(0.0), metal::float3(1.0));
     for (uint level = 0u; level < 15u; level += 1u) {
-        uint _e85 = word;
-        if ((_e85 >> 30u) != 0u) {
+        if ((word >> 30u) != 0u) {
             break;
         }
         uint first = word;
-        metal::float3 _e91 = share;
-        low = metal::min(metal::floor(2.0 * _e91), metal::float3(1.0));
-        float _e99 = low.x;
-        float _e101 = low.y;
-        float _e106 = low.z;
-        uint _e112 = irradia_probe_cell_word(first + naga_f2u32((_e99 + (2.0 * _e101)) + (4.0 * _e106)));
+        low = metal::min(metal::floor(2.0 * share), metal::float3(1.0));
+        uint _e112 = irradia_probe_cell_word(first + naga_f2u32((low.x + (2.0 * low.y)) + (4.0 * low.z)));
         word = _e112;
         uint _e113 = word;
         if ((_e113 >> 30u) == 2u) {
-            uint _e118 = word;
-            uint child = _e118 & 7u;
+            uint child = word & 7u;
             low = static_cast<metal::float3>(metal::uint3(child & 1u, (child >> 1u) & 1u, child >> 2u));
             uint _e132 = irradia_probe_cell_word(first + child);
             word = _e132;
         }
-        metal::float3 _e133 = share;
-        metal::float3 _e136 = low;
-        share = metal::clamp((2.0 * _e133) - _e136, metal::float3(0.0), metal::float3(1.0));
+        share = metal::clamp((2.0 * share) - low, metal::float3(0.0), metal::float3(1.0));
     }
-    metal::float3 _e146 = share;
-    uint _e147 = word;
-    return metal::float4(_e146, static_cast<float>(_e147 & 1073741823u));
+    return metal::float4(share, static_cast<float>(word & 1073741823u));
 }
 
 uint irradia_probe_corner(

@@ -116,26 +116,17 @@ metal::float3 irradia_probe_irradiance(
     metal::float4 _e50 = irradia_lobe_linear(n);
     metal::float4 _e51 = irradia_lobe_quadratic(n);
     e = _e50.x * metal::float3(ax, ay.x);
-    metal::float3 _e57 = e;
-    e = _e57 + (_e50.y * metal::float3(ay.y, az));
-    metal::float3 _e63 = e;
-    e = _e63 + (_e50.z * metal::float3(aw, bx.x));
-    metal::float3 _e69 = e;
-    e = _e69 + (_e50.w * metal::float3(bx.y, by));
-    metal::float3 _e75 = e;
-    e = _e75 + (_e51.x * metal::float3(bz, bw.x));
-    metal::float3 _e81 = e;
-    e = _e81 + (_e51.y * metal::float3(bw.y, cx));
-    metal::float3 _e87 = e;
-    e = _e87 + (_e51.z * metal::float3(cy, cz.x));
-    metal::float3 _e93 = e;
-    e = _e93 + (_e51.w * metal::float3(cz.y, cw));
-    metal::float3 _e99 = e;
+    e = e + (_e50.y * metal::float3(ay.y, az));
+    e = e + (_e50.z * metal::float3(aw, bx.x));
+    e = e + (_e50.w * metal::float3(bx.y, by));
+    e = e + (_e51.x * metal::float3(bz, bw.x));
+    e = e + (_e51.y * metal::float3(bw.y, cx));
+    e = e + (_e51.z * metal::float3(cy, cz.x));
+    e = e + (_e51.w * metal::float3(cz.y, cw));
     float _e100 = irradia_lobe_squares(n);
-    e = _e99 + (_e100 * metal::float3(dx, dy.x));
-    metal::float3 _e105 = e;
+    e = e + (_e100 * metal::float3(dx, dy.x));
     float _e109 = irradia_probe_layout[4].x;
-    return _e105 * _e109;
+    return e * _e109;
 }
 
 float irradia_probe_validity(

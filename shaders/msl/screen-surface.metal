@@ -56,6 +56,5 @@ irradia_screen_Surface irradia_screen_unpacked(
     metal::float3 _e18 = irradia_screen_direction(uv);
     seen.surface_normal = _e18;
     seen.depth = stored.w;
-    irradia_screen_Surface _e21 = seen;
-    return _e21;
+    return seen;
 }

@@ -38,26 +38,20 @@ metal::float3 irradia_screen_upsampled(
     metal::uint2 cell = pixel >> metal::uint2(1u, 1u);
     metal::float2 share = 0.5 * static_cast<metal::float2>(pixel & metal::uint2(1u, 1u));
     for (uint i = 0u; i < 4u; i += 1u) {
-        uint _e44 = i;
-        uint _e47 = i;
-        metal::uint2 corner = metal::uint2(_e44 & 1u, _e47 >> 1u);
+        metal::uint2 corner = metal::uint2(i & 1u, i >> 1u);
         metal::float2 near = metal::mix(metal::float2(1.0) - share, share, static_cast<metal::float2>(corner));
         float weight = near.x * near.y;
         if (weight > 0.0) {
             metal::uint2 _e62 = irradia_screen_sample(cell + corner);
             float _e64 = irradia_screen_kinship(_e8, _e1.normal, pixel_size, _e62);
             float counts = weight * _e64;
-            metal::float4 _e66 = sum;
             metal::float4 _e70 = irradia_screen_half.read(metal::uint2(cell + corner), 0);
-            sum = _e66 + (counts * metal::float4(_e70.xyz, 1.0));
+            sum = sum + (counts * metal::float4(_e70.xyz, 1.0));
         }
     }
-    float _e80 = sum.w;
-    if (_e80 < irradia_screen_least) {
+    if (sum.w < irradia_screen_least) {
         metal::float3 _e85 = irradia_screen_light(_e8, _e1.normal, _e1.surface_normal);
         return _e85;
     }
-    metal::float4 _e86 = sum;
-    float _e89 = sum.w;
-    return _e86.xyz / metal::float3(_e89);
+    return sum.xyz / metal::float3(sum.w);
 }

@@ -16,36 +16,18 @@ void irradia_spherical_harmonics(
     for (uint m = 0u; m < shape.y; m += 1u) {
         before = 0.0;
         last = 0.0;
-        uint _e26 = m;
-        for (uint l = _e26; l < shape.y; l += 1u) {
-            uint _e31 = at;
-            metal::float4 _e32 = irradia_constant(_e31);
-            float _e36 = last;
-            float _e39 = before;
-            float next = (((_e32.y * v.z) * _e36) - (_e32.z * _e39)) + _e32.w;
-            uint _e45 = l;
-            uint _e46 = l;
-            uint centre = shape.x + (_e45 * (_e46 + 1u));
-            uint _e51 = m;
-            float _e56 = turn.x;
-            irradia_push(centre + _e51, (_e32.x * next) * _e56);
-            uint _e58 = m;
-            if (_e58 > 0u) {
-                uint _e61 = m;
-                float _e66 = turn.y;
-                irradia_push(centre - _e61, (_e32.x * next) * _e66);
+        for (uint l = m; l < shape.y; l += 1u) {
+            metal::float4 _e32 = irradia_constant(at);
+            float next = (((_e32.y * v.z) * last) - (_e32.z * before)) + _e32.w;
+            uint centre = shape.x + (l * (l + 1u));
+            irradia_push(centre + m, (_e32.x * next) * turn.x);
+            if (m > 0u) {
+                irradia_push(centre - m, (_e32.x * next) * turn.y);
             }
-            float _e68 = last;
-            before = _e68;
+            before = last;
             last = next;
-            uint _e69 = at;
-            at = _e69 + 1u;
+            at = at + 1u;
         }
-        float _e77 = turn.x;
-        float _e81 = turn.y;
-        float _e86 = turn.y;
-        float _e90 = turn.x;
-        turn = metal::float2((v.x * _e77) - (v.y * _e81), (v.x * _e86) + (v.y * _e90));
+        turn = metal::float2((v.x * turn.x) - (v.y * turn.y), (v.x * turn.y) + (v.y * turn.x));
     }
-    return;
 }

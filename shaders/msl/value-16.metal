@@ -5,10 +5,8 @@ metal::float2 irradia_table_sums[4];
 
 void irradia_table_clear() {
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
-        uint _e6 = i;
-        irradia_table_sums[_e6] = metal::float2(0.0);
+        irradia_table_sums[i] = metal::float2(0.0);
     }
-    return;
 }
 
 float irradia_table_scale(
@@ -23,12 +21,9 @@ void irradia_table_add(
     float weight
 ) {
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
-        uint _e8 = i;
-        metal::float2 _e10 = irradia_table_sums[_e8];
-        uint _e11 = i;
-        irradia_table_sums[_e8] = _e10 + (weight * float2(as_type<half2>(words[_e11])));
+        metal::float2 _e10 = irradia_table_sums[i];
+        irradia_table_sums[i] = _e10 + (weight * float2(as_type<half2>(words[i])));
     }
-    return;
 }
 
 void irradia_table_push(
@@ -36,18 +31,14 @@ void irradia_table_push(
     uint count
 ) {
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
-        uint _e8 = i;
-        uint first = 2u * _e8;
+        uint first = 2u * i;
         if (first < count) {
-            uint _e13 = i;
-            float _e16 = irradia_table_sums[_e13].x;
+            float _e16 = irradia_table_sums[i].x;
             irradia_push(column + first, _e16);
         }
         if ((first + 1u) < count) {
-            uint _e24 = i;
-            float _e27 = irradia_table_sums[_e24].y;
+            float _e27 = irradia_table_sums[i].y;
             irradia_push((column + first) + 1u, _e27);
         }
     }
-    return;
 }

@@ -5,7 +5,6 @@ metal::float4 irradia_table_sums;
 
 void irradia_table_clear() {
     irradia_table_sums = metal::float4(0.0);
-    return;
 }
 
 float irradia_table_scale(
@@ -19,9 +18,7 @@ void irradia_table_add(
     metal::uint4 words,
     float weight
 ) {
-    metal::float4 _e3 = irradia_table_sums;
-    irradia_table_sums = _e3 + (weight * as_type<metal::float4>(words));
-    return;
+    irradia_table_sums = irradia_table_sums + (weight * as_type<metal::float4>(words));
 }
 
 void irradia_table_push(
@@ -29,13 +26,9 @@ void irradia_table_push(
     uint count
 ) {
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
-        uint _e7 = i;
-        if (_e7 < count) {
-            uint _e9 = i;
-            uint _e12 = i;
-            float _e14 = irradia_table_sums[_e12];
-            irradia_push(column + _e9, _e14);
+        if (i < count) {
+            float _e14 = irradia_table_sums[i];
+            irradia_push(column + i, _e14);
         }
     }
-    return;
 }

@@ -6,12 +6,9 @@ metal::float4 irradia_table_upper[4];
 
 void irradia_table_clear() {
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
-        uint _e6 = i;
-        irradia_table_lower[_e6] = metal::float4(0.0);
-        uint _e11 = i;
-        irradia_table_upper[_e11] = metal::float4(0.0);
+        irradia_table_lower[i] = metal::float4(0.0);
+        irradia_table_upper[i] = metal::float4(0.0);
     }
-    return;
 }
 
 float irradia_table_scale(
@@ -27,18 +24,13 @@ void irradia_table_add(
     float weight
 ) {
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
-        uint _e7 = i;
-        metal::uint4 lower = (metal::uint4(words[_e7]) >> metal::uint4(0u, 4u, 8u, 12u)) & metal::uint4(15u);
-        uint _e19 = i;
-        metal::uint4 upper = (metal::uint4(words[_e19]) >> metal::uint4(16u, 20u, 24u, 28u)) & metal::uint4(15u);
-        uint _e32 = i;
-        metal::float4 _e34 = irradia_table_lower[_e32];
-        irradia_table_lower[_e32] = _e34 + (weight * (static_cast<metal::float4>(lower) - metal::float4(8.0)));
-        uint _e42 = i;
-        metal::float4 _e44 = irradia_table_upper[_e42];
-        irradia_table_upper[_e42] = _e44 + (weight * (static_cast<metal::float4>(upper) - metal::float4(8.0)));
+        metal::uint4 lower = (metal::uint4(words[i]) >> metal::uint4(0u, 4u, 8u, 12u)) & metal::uint4(15u);
+        metal::uint4 upper = (metal::uint4(words[i]) >> metal::uint4(16u, 20u, 24u, 28u)) & metal::uint4(15u);
+        metal::float4 _e34 = irradia_table_lower[i];
+        irradia_table_lower[i] = _e34 + (weight * (static_cast<metal::float4>(lower) - metal::float4(8.0)));
+        metal::float4 _e44 = irradia_table_upper[i];
+        irradia_table_upper[i] = _e44 + (weight * (static_cast<metal::float4>(upper) - metal::float4(8.0)));
     }
-    return;
 }
 
 void irradia_table_push(
@@ -47,22 +39,15 @@ void irradia_table_push(
 ) {
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
         for (uint j = 0u; j < 4u; j += 1u) {
-            uint _e13 = i;
-            uint _e15 = j;
-            uint feature = (8u * _e13) + _e15;
+            uint feature = (8u * i) + j;
             if (feature < count) {
-                uint _e20 = i;
-                uint _e22 = j;
-                float _e24 = irradia_table_lower[_e20][_e22];
+                float _e24 = irradia_table_lower[i][j];
                 irradia_push(column + feature, _e24);
             }
             if ((feature + 4u) < count) {
-                uint _e32 = i;
-                uint _e34 = j;
-                float _e36 = irradia_table_upper[_e32][_e34];
+                float _e36 = irradia_table_upper[i][j];
                 irradia_push((column + feature) + 4u, _e36);
             }
         }
     }
-    return;
 }

@@ -5,10 +5,8 @@ metal::float4 irradia_table_sums[4];
 
 void irradia_table_clear() {
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
-        uint _e6 = i;
-        irradia_table_sums[_e6] = metal::float4(0.0);
+        irradia_table_sums[i] = metal::float4(0.0);
     }
-    return;
 }
 
 float irradia_table_scale(
@@ -24,13 +22,10 @@ void irradia_table_add(
     float weight
 ) {
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
-        uint _e7 = i;
-        metal::int4 bytes = as_type<metal::int4>(metal::uint4(words[_e7]) << metal::uint4(24u, 16u, 8u, 0u)) >> metal::uint4(24u);
-        uint _e21 = i;
-        metal::float4 _e23 = irradia_table_sums[_e21];
-        irradia_table_sums[_e21] = _e23 + (weight * static_cast<metal::float4>(bytes));
+        metal::int4 bytes = as_type<metal::int4>(metal::uint4(words[i]) << metal::uint4(24u, 16u, 8u, 0u)) >> metal::uint4(24u);
+        metal::float4 _e23 = irradia_table_sums[i];
+        irradia_table_sums[i] = _e23 + (weight * static_cast<metal::float4>(bytes));
     }
-    return;
 }
 
 void irradia_table_push(
@@ -39,16 +34,11 @@ void irradia_table_push(
 ) {
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
         for (uint j = 0u; j < 4u; j += 1u) {
-            uint _e13 = i;
-            uint _e15 = j;
-            uint feature = (4u * _e13) + _e15;
+            uint feature = (4u * i) + j;
             if (feature < count) {
-                uint _e20 = i;
-                uint _e22 = j;
-                float _e24 = irradia_table_sums[_e20][_e22];
+                float _e24 = irradia_table_sums[i][j];
                 irradia_push(column + feature, _e24);
             }
         }
     }
-    return;
 }

@@ -117,6 +117,7 @@ function main(): void {
   const names = [...stale.map(([path]) => path), ...orphans(files)].map((path) => relative(ROOT, path));
   if (process.argv.includes("--check")) {
     for (const name of names) console.error(`stale: ${name}`);
+    console.log(JSON.stringify({ files: files.size, stale: names }));
     process.exitCode = names.length ? 1 : 0;
     return;
   }

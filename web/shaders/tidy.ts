@@ -4,10 +4,14 @@
  * naga turns every `for` into an endless loop with flags, and in HLSL and MSL guards it against never ending and
  * clamps every index. Our loops end and our indices fit, as each piece shows, so all of that goes.
  */
+import { withoutCopies } from "./copies.js";
 
-/** One declaration of naga's: loops back to `for`, without guards and clamps, and local names as they were. */
+/** One declaration of naga's: loops back to `for`, without guards, clamps and copies, local names as they were. */
 export function tidy(declaration: string): string {
-  return withShortNames(restoreLoops(withoutGuards(declaration)));
+  const text = withoutCopies(withShortNames(restoreLoops(withoutGuards(declaration))));
+  return text
+    .replace(/\n {4}return;(?=\n\}\n)/, "")
+    .replace(/^(?:\{|.*\) \{)\n\n/m, (head) => head.slice(0, -1));
 }
 
 /** naga numbers what has one name in several functions of a module; within one function there are few such. */
