@@ -110,8 +110,18 @@ def _scene(rows: Sequence[Row], scene: str) -> list[str]:
         lines.append(f"| {' | '.join(cells)} |")
     noise = [row["views"][0]["flip"]["noise"] for row in here]
     if noise:
-        lines += ["", f"The reference's own noise is worth an HDR-FLIP of {max(noise):.4f}."]
+        lines += ["", f"The reference's own noise is worth an HDR-FLIP of {max(noise):.4f}. {_scored(here)}"]
     return lines
+
+
+def _scored(rows: Sequence[Row]) -> str:
+    """What figures of pictures are of: rows of before don't say, and counted the backdrop too."""
+    of_scene = sum(row.get("pixels") == "scene" for row in rows)
+    if of_scene == len(rows):
+        return "Figures of pictures are of the pixels that show the scene."
+    if of_scene == 0:
+        return "Figures of pictures are of whole pictures, the backdrop included."
+    return f"Figures of pictures are of the scene in {of_scene} rows, of whole pictures in the others."
 
 
 def _sh_mode(rows: Sequence[Row]) -> list[str]:

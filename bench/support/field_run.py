@@ -178,7 +178,7 @@ def _kind(name: str) -> str:
 
 def _figures(judged: dict[str, Any]) -> Row:
     kept = {key: judged[key] for key in ("n_bytes", "flip", "space", "leaks", "views")}
-    return {**kept, "label": judged["name"]}
+    return {**kept, "label": judged["name"], "pixels": "scene"}  # before, whole pictures were scored
 
 
 def _irradia(*arguments: object) -> dict[str, Any]:

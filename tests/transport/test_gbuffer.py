@@ -152,3 +152,30 @@ def test_a_room_lit_by_its_own_irradiance_is_the_path_traced_room():
     (seen,) = look(scene, scene.cameras[0], options)
     reference = render(scene, scene.cameras[0], replace(options, spp=256, seed=7))
     np.testing.assert_allclose(seen.lit_by(gathered).mean((0, 1)), reference.mean((0, 1)), rtol=0.02)
+
+
+def _pixels(scene, *, height: float = 2.0) -> np.ndarray:
+    from irradia.transport.gbuffer import pixels_of_scene
+
+    return pixels_of_scene(scene, _camera(height), _options())
+
+
+def test_pixels_of_the_scene_are_those_whose_backdrop_is_hidden():
+    sheet = stacked([Sheet(matte(0.5), width=0.5)], environment=environment_from_color((0.0, 0.0, 0.0)))
+    before_white = replace(sheet, environment=environment_from_color((1.0, 1.0, 1.0)))
+    hidden = _under(before_white, DARKNESS).mean(axis=2) < 0.5
+    found = _pixels(sheet)
+    assert 0.02 < found.mean() < 0.9
+    assert (found != hidden).mean() < 0.03  # at the sheet's edge
+    np.testing.assert_array_equal(found, _pixels(before_white))
+
+
+def test_what_is_unlit_black_or_shines_is_scene_too():
+    glowing, unlit = replace(BLACK, emission=(4.0, 2.0, 1.0)), replace(matte(0.5), unlit=True)
+    expected = _pixels(stacked([Sheet(matte(0.5), width=0.5)]))
+    for material in (glowing, unlit, BLACK):
+        np.testing.assert_array_equal(_pixels(stacked([Sheet(material, width=0.5)])), expected)
+
+
+def test_where_a_camera_sees_backdrop_alone_all_of_it_counts():
+    assert _pixels(stacked([Sheet(matte(0.5))]), height=-2.0).all()

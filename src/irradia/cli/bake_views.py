@@ -46,10 +46,10 @@ class View:
     """One camera's pictures: (H, W, 3) linear radiance each, and their comparison.
 
     Attributes:
-        baked, reference: Diffuse transport; these are compared.
+        baked, reference: Diffuse transport; these are compared, in pixels that show the scene.
         halves: Two independent ones whose mean ``reference`` is.
         full: Full materials, to look at.
-        flip: (H, W) error of ``baked``.
+        flip: (H, W) error of ``baked``, 0 where the backdrop is seen.
         relmse_noise_free: relMSE without what the reference's own noise adds to it.
     """
 
@@ -68,8 +68,9 @@ def render_view(scene: Scene, lightmap: BakedLight, options: ViewOptions, progre
 
     The reference is made in two independent halves, so that its noise can be told from error.
     """
-    from irradia.metrics import compare, flip, relmse_without_reference_noise
+    from irradia.metrics import compare, flip_where, relmse_without_reference_noise
     from irradia.scene.framing import camera_from_spec
+    from irradia.transport.gbuffer import pixels_of_scene
     from irradia.transport.render import RenderOptions, Transport, render
 
     camera = camera_from_spec(scene, None)
@@ -86,15 +87,16 @@ def render_view(scene: Scene, lightmap: BakedLight, options: ViewOptions, progre
     full = picture("full", options.full_spp, "full")
     with progress.stage("comparison"):
         reference = 0.5 * (halves[0] + halves[1])
+        scene_only = pixels_of_scene(scene, camera, RenderOptions(width, height, fast_rays=options.fast_rays))
         return View(
             camera,
             baked,
             reference,
             halves,
             full,
-            flip(baked, reference).error,
-            compare(baked, reference),
-            relmse_without_reference_noise(baked, halves[0], halves[1]),
+            flip_where(baked, reference, scene_only),
+            compare(baked, reference, scene_only),
+            relmse_without_reference_noise(baked[scene_only], *(half[scene_only] for half in halves)),
         )
 
 

@@ -149,7 +149,8 @@ def evaluate(
         *_baselines(job, scene, n_bytes, progress),
     ]
     shown = _as_noisy(scene, shown)
-    rivals = tuple(_judge(job, scene, each, cameras, references, samples, progress) for each in shown)
+    seen = _seen(job, scene, cameras, references)
+    rivals = tuple(_judge(job, scene, each, seen, samples, progress) for each in shown)
     with progress.stage("queries"):
         evaluator = backend(field.backend_name, field.spec).evaluator(field.spec, field.parameters)
         speed = queries_per_second(evaluator, directional=field.spec.mode == "irradiance")
@@ -164,21 +165,41 @@ def _as_noisy(scene: Scene, rivals: list[Baseline]) -> list[Baseline]:
     return [replace(rival, most_spp=least) for rival in rivals]
 
 
+@dataclass(frozen=True)
+class _Seen:
+    """What rivals are judged by from one camera: the reference, and (H, W) which pixels show the scene."""
+
+    camera: Camera
+    reference: Reference
+    pixels: NDArray[np.bool_]
+
+
+def _seen(
+    job: EvalJob, scene: Scene, cameras: Sequence[Camera], references: Sequence[Reference]
+) -> list[_Seen]:
+    from irradia.transport.gbuffer import pixels_of_scene
+
+    return [
+        _Seen(camera, reference, pixels_of_scene(scene, camera, _render_options(job, camera, 1, "picture")))
+        for camera, reference in zip(cameras, references, strict=True)
+    ]
+
+
 def _judge(
     job: EvalJob,
     scene: Scene,
     rival: Baseline,
-    cameras: Sequence[Camera],
-    references: Sequence[Reference],
+    seen: Sequence[_Seen],
     samples: SpaceSamples | None,
     progress: Progress,
 ) -> Judged:
     from irradia.field.evaluation import leak_ratio, score_in_space, score_picture
 
     views = []
-    for camera, reference in zip(cameras, references, strict=True):
-        picture = _picture(job, scene, rival, camera, progress)
-        views.append(View(picture, score_picture(picture, reference.first, reference.second)))
+    for view in seen:
+        picture = _picture(job, scene, rival, view.camera, progress)
+        scores = score_picture(picture, view.reference.first, view.reference.second, view.pixels)
+        views.append(View(picture, scores))
     if samples is None or rival.irradiance is None:
         return Judged(rival.key, rival.name, rival.n_bytes, tuple(views))
     with progress.stage(f"{rival.name} in space"):

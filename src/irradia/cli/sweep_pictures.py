@@ -88,10 +88,13 @@ def score_all(
     """Yields the picture of each field by name, and hands its HDR-FLIP to ``keep``."""
     from irradia.field.evaluation import score_picture
     from irradia.field.files import load_field
+    from irradia.transport.gbuffer import mostly_scene
 
+    scene = mostly_scene(view.bands)
     with progress.stage("pictures", len(files), "fields") as stage:
         for name, path in files.items():
             picture = view.picture(load_field(path))
-            keep(name, score_picture(picture, view.reference.first, view.reference.second).flip.value)
+            scores = score_picture(picture, view.reference.first, view.reference.second, scene)
+            keep(name, scores.flip.value)
             yield name, picture
             stage.advance()

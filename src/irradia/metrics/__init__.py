@@ -1,6 +1,6 @@
 """How far two images or lightmaps are apart: pure functions on arrays."""
 
-from irradia.metrics.comparison import Comparison, compare
+from irradia.metrics.comparison import Comparison, compare, flip_where
 from irradia.metrics.flip import FlipExposures, FlipResult, flip, flip_exposures
 from irradia.metrics.pixelwise import mae, mean_ratio, relative_error_p95, relmse, smape
 from irradia.metrics.psnr import psnr
@@ -13,6 +13,7 @@ __all__ = [
     "compare",
     "flip",
     "flip_exposures",
+    "flip_where",
     "mae",
     "mean_ratio",
     "psnr",

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irradia.core.errors import InputError
-from irradia.metrics.flip import flip, flip_exposures
+from irradia.metrics.flip import FlipExposures, flip, flip_exposures
 from irradia.metrics.pixelwise import mae, mean_ratio, relative_error_p95, relmse, smape
 from irradia.metrics.psnr import psnr
 
@@ -75,19 +75,35 @@ def compare(test: NDArray, reference: NDArray, mask: NDArray[np.bool_] | None = 
     )
 
 
+def flip_where(
+    test: NDArray, reference: NDArray, counted: NDArray[np.bool_], exposures: FlipExposures | None = None
+) -> NDArray[np.float32]:
+    """HDR-FLIP's error (H, W) of two images (H, W, 3), both black where nothing counts; 0 there.
+
+    Args:
+        test: Linear values.
+        reference: As ``test``.
+        counted: (H, W) pixels that count; some must.
+        exposures: Those of what counts of the reference, by default.
+    """
+    exposures = exposures or flip_exposures(reference[counted])
+    inside = counted[..., None]
+    found = flip(np.where(inside, test, 0.0), np.where(inside, reference, 0.0), exposures)
+    return np.where(counted, found.error, np.float32(0.0))
+
+
 def _masked_flip(test: NDArray, reference: NDArray, counted: NDArray[np.bool_]) -> float:
     """Mean over counted pixels of all pages, at exposures common to the pages."""
     exposures = flip_exposures(reference[counted])
     height, width = reference.shape[-3:-1]
-    kept = counted[..., None]
     total = 0.0
     for x, r, inside in zip(
-        np.where(kept, test, 0.0).reshape(-1, height, width, 3),
-        np.where(kept, reference, 0.0).reshape(-1, height, width, 3),
+        test.reshape(-1, height, width, 3),
+        reference.reshape(-1, height, width, 3),
         counted.reshape(-1, height, width),
         strict=True,
     ):
-        total += float(flip(x, r, exposures).error[inside].sum(dtype=np.float64))
+        total += float(flip_where(x, r, inside, exposures).sum(dtype=np.float64))
     return total / float(counted.sum())
 
 

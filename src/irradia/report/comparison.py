@@ -11,7 +11,7 @@ from irradia.report.pictures import data_uri, display, error_colours, error_grad
 
 # Metric: label, and what a good value is.
 _SCORES = {
-    "flip": ("HDR-FLIP, mean", "0 is equal; under 0.05 is hard to see side by side"),
+    "flip": ("HDR-FLIP, mean where the scene is seen", "0 is equal; under 0.05 is hard to see side by side"),
     "psnr": ("PSNR", "decibels, after tone mapping; more is better"),
     "relmse": ("relMSE", "0 is equal; the reference's own noise counts"),
     "relmse_noise_free": ("relMSE, noise of the reference removed", "0 is equal"),

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -39,6 +39,7 @@ Irradiance = Callable[[F32, F32], F32]
 
 _SAMPLES_AT_ONCE = 1 << 20
 _MAX_SEGMENTS = 1024
+_MASK_SPP = 4
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,7 @@ class SeenPlaces:
 
     Attributes:
         rows: Which.
+        shown: (rows, width) share of each pixel's rays that stop at a surface; the others see the backdrop.
         other: (rows, width, 3) mean radiance that needs no E.
         pixel: (S,) number within these rows of each sample that asks for E.
         positions, normals: (S, 3) where; normals are vertex normals, turned to the side that is seen.
@@ -55,6 +57,7 @@ class SeenPlaces:
     """
 
     rows: slice
+    shown: F32
     other: F32
     pixel: NDArray[np.int64]
     positions: F32
@@ -97,6 +100,20 @@ def picture_under(
     return picture
 
 
+def pixels_of_scene(scene: Scene, camera: Camera, options: RenderOptions) -> NDArray[np.bool_]:
+    """(height, width) pixels that show the scene: at least half of their rays stop at a surface.
+
+    Where none does, all of them: there is nothing but backdrop to be judged.
+    """
+    return mostly_scene(look(scene, camera, replace(options, spp=_MASK_SPP)))
+
+
+def mostly_scene(bands: Iterable[SeenPlaces]) -> NDArray[np.bool_]:
+    """:func:`pixels_of_scene` of all bands of a picture, in order."""
+    shown = np.concatenate([band.shown for band in bands]) >= 0.5
+    return shown if shown.any() else np.ones_like(shown)
+
+
 def look(scene: Scene, camera: Camera, options: RenderOptions) -> Iterator[SeenPlaces]:
     """Looks through a camera, a band of rows at a time, so that memory is bounded.
 
@@ -121,7 +138,8 @@ class _Sight:
         other: What it has met that needs no E.
         sampler: Its random numbers.
         triangle, bary, back: Where it stopped, and whether from behind.
-        weight: Throughput there, over the probability of stopping; 0 if it never did.
+        stopped: Whether it did stop.
+        weight: Throughput there, over the probability of stopping.
         segments: Counter.
         active: Whether it goes on.
     """
@@ -134,6 +152,7 @@ class _Sight:
     triangle: mi.UInt32
     bary: mi.Point2f
     back: mi.Bool
+    stopped: mi.Bool
     weight: mi.Color3f
     segments: mi.UInt32
     active: mi.Bool
@@ -160,12 +179,13 @@ class _Viewer:
         local = lane // dr.opaque(mi.UInt32, spp)
         found = self._samples(local + dr.opaque(mi.UInt32, rows.start * width), lane - local * spp)
         dr.eval(found)
-        other, asks, position, normal, factor, behind = found
+        stopped, other, asks, position, normal, factor, behind = found
         chosen = np.flatnonzero(np.array(asks))
         share = np.float32(1.0 / spp)
         light = _rows(other).reshape(n_pixels, spp, 3).sum(axis=1) * share
         return SeenPlaces(
             rows,
+            np.array(stopped).reshape(rows.stop - rows.start, width, spp).mean(axis=2, dtype=np.float32),
             light.reshape(rows.stop - rows.start, width, 3),
             chosen // spp,
             _rows(position)[chosen],
@@ -176,8 +196,10 @@ class _Viewer:
 
     def _samples(
         self, pixel: mi.UInt32, number: mi.UInt32
-    ) -> tuple[mi.Color3f, mi.Bool, mi.Point3f, mi.Vector3f, mi.Color3f, mi.Color3f]:
-        """Other light; whether E is asked for; where, and the factors in front and behind."""
+    ) -> tuple[mi.Bool, mi.Color3f, mi.Bool, mi.Point3f, mi.Vector3f, mi.Color3f, mi.Color3f]:
+        """Whether a surface is seen; other light; whether E is asked for; where, and the factors in front
+        and behind.
+        """
         world, options = self._world, self._options
         seed = hash_u32(pixel ^ hash_u32(dr.opaque(mi.UInt32, self._seed)))
         sampler = Sampler(mi.UInt32(number), mi.UInt32(seed))
@@ -185,7 +207,7 @@ class _Viewer:
         seen = self._follow(*camera_ray(self._camera, options.width, options.height, pixel, jitter), sampler)
 
         # ---- what the surface does with light ----
-        asks = dr.max(seen.weight) > 0.0
+        asks = mi.Bool(seen.stopped)
         point = world.point(seen.triangle, seen.bary, asks, seen.back)
         reflected = seen.weight * world.appearance(seen.triangle, seen.bary, asks).reflectance
         live = direct(self._live_world, point, seen.sampler, mi.Float(1.0), asks).light
@@ -194,7 +216,7 @@ class _Viewer:
         if point.sides is not None:
             factor, behind = factor * point.sides.front, factor * point.sides.behind
         asks &= dr.max(dr.maximum(factor, behind)) > 0.0
-        return other, asks, point.position, point.ns, factor, behind
+        return seen.stopped, other, asks, point.position, point.ns, factor, behind
 
     def _follow(self, origin: mi.Point3f, direction: mi.Vector3f, sampler: Sampler) -> _Sight:
         """To where a ray stops, or out of the scene."""
@@ -207,6 +229,7 @@ class _Viewer:
             triangle=mi.UInt32(0),
             bary=mi.Point2f(0.0),
             back=mi.Bool(False),
+            stopped=mi.Bool(False),
             weight=mi.Color3f(0.0),
             segments=mi.UInt32(0),
             active=mi.Bool(True),
@@ -245,6 +268,7 @@ class _Viewer:
         weight = ray.throughput * stop_weight
         ray.other += dr.select(stops, weight * world.emission(hit.triangle, hit.bary, back, stops), 0.0)
         ray.weight = dr.select(stops, weight, ray.weight)
+        ray.stopped |= stops
         ray.triangle = dr.select(stops, hit.triangle, ray.triangle)
         ray.bary = dr.select(stops, hit.bary, ray.bary)
         ray.back = dr.select(stops, back, ray.back)

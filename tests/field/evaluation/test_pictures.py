@@ -53,6 +53,36 @@ def test_noise_of_the_ratio_is_the_standard_error_of_the_mean():
     assert scores.mean_ratio.noise == pytest.approx(expected, rel=0.05)
 
 
+def test_the_backdrop_counts_for_nothing():
+    scene = np.zeros(SHAPE[:2], bool)
+    scene[:24] = True
+    first, second = _halves(0.005)
+    wrong_behind = np.where(scene[..., None], 1.2 * _truth(), 9.0).astype(np.float32)
+    right_behind = np.where(scene[..., None], 1.2 * _truth(), 0.5 * (first + second)).astype(np.float32)
+    scores = score_picture(right_behind, first, second, scene)
+    other = score_picture(wrong_behind, first, second, scene)
+    assert scores.figures == other.figures
+    assert scores.relmse_noise_free == other.relmse_noise_free
+    assert scores.mean_ratio.value == pytest.approx(1.2, rel=1e-3)
+    assert scores.scene_share == 0.5
+    assert (scores.error[~scene] == 0.0).all()
+    assert scores.error[scene].mean(dtype=np.float64) == pytest.approx(scores.flip.value, rel=1e-6)
+    half = score_picture(1.2 * _truth()[:24], first[:24], second[:24])
+    assert scores.flip.value == pytest.approx(half.flip.value, rel=0.1)  # but for the edge
+
+
+def test_the_whole_pictures_figure_stands_beside_and_flatters():
+    scene = np.zeros(SHAPE[:2], bool)
+    scene[:24] = True
+    first, second = _halves(0.005)
+    picture = np.where(scene[..., None], 1.2 * _truth(), 0.5 * (first + second)).astype(np.float32)
+    scores = score_picture(picture, first, second, scene)
+    assert scores.whole_flip < 0.6 * scores.flip.value
+    assert scores.to_json()["whole_flip"] == scores.whole_flip
+    everything = score_picture(picture, first, second)
+    assert everything.whole_flip == everything.flip.value == pytest.approx(scores.whole_flip, rel=1e-6)
+
+
 def test_the_error_map_has_the_mean_that_is_told():
     scores = score_picture(1.2 * _truth(), *_halves(0.005))
     assert scores.error.shape == SHAPE[:2]

@@ -4,6 +4,9 @@ The reference is the mean of two independent halves a and b. What separates the 
 four times the variance of what their mean has, so the score of a against b tells the noise of any figure:
 a quarter of it where the figure is quadratic in the error, half of it where it is (nearly) linear, as FLIP
 is for small errors. A figure at or under that says only that the error can't be seen in this reference.
+
+Only pixels that show the scene count. The backdrop is the same in both pictures, and would make any field
+look the better the more of it is seen.
 """
 
 from __future__ import annotations
@@ -15,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irradia.metrics import compare, flip, flip_exposures, relmse_without_reference_noise
+from irradia.metrics import compare, flip, flip_exposures, flip_where, relmse_without_reference_noise
 
 _STANDARD_ERRORS = 2.0  # within as many, a mean is as good as equal
 
@@ -44,7 +47,9 @@ class PictureScores:
             percentile of the relative error.
         relmse_noise_free: relMSE without what the reference's noise adds to it.
         flip_start_ev, flip_stop_ev: Exposures that FLIP looked at, stops.
-        error: (H, W) FLIP by pixel.
+        error: (H, W) FLIP by pixel, 0 where nothing counts.
+        scene_share: Share of the pixels that count.
+        whole_flip: Mean HDR-FLIP over the whole picture, backdrop and all.
     """
 
     flip: Figure
@@ -56,6 +61,8 @@ class PictureScores:
     flip_start_ev: int
     flip_stop_ev: int
     error: NDArray[np.float32]
+    scene_share: float
+    whole_flip: float
 
     @property
     def figures(self) -> dict[str, Figure]:
@@ -70,28 +77,42 @@ class PictureScores:
         }
         plain["relmse_noise_free"] = self.relmse_noise_free
         plain["flip_exposures_ev"] = [self.flip_start_ev, self.flip_stop_ev]
+        plain["scene_share"], plain["whole_flip"] = self.scene_share, self.whole_flip
         return plain
 
 
-def score_picture(picture: NDArray, half_a: NDArray, half_b: NDArray) -> PictureScores:
+def score_picture(
+    picture: NDArray, half_a: NDArray, half_b: NDArray, scene: NDArray[np.bool_] | None = None
+) -> PictureScores:
     """Scores linear radiance (H, W, 3) against the mean of two independent references like it.
+
+    Args:
+        picture: What is judged.
+        half_a: A reference.
+        half_b: Another of equal quality.
+        scene: (H, W) pixels that count, those that show the scene; all by default.
 
     Raises:
         InputError: Sizes differ, or values are NaN or infinite.
     """
+    counted = np.ones(half_a.shape[:2], np.bool_) if scene is None else scene
     reference = 0.5 * (half_a + half_b)
-    found, noise = compare(picture, reference), compare(half_a, half_b)
-    exposures = flip_exposures(reference)
+    found, noise = compare(picture, reference, counted), compare(half_a, half_b, counted)
+    exposures = flip_exposures(reference[counted])
+    between_halves = flip_where(half_a, half_b, counted, exposures)[counted]
+    whole = found.flip if counted.all() else flip(picture, reference, exposures).mean
     return PictureScores(
-        flip=_figure(found.flip, flip(half_a, half_b, exposures).mean / 2.0),
+        flip=_figure(found.flip, float(between_halves.mean(dtype=np.float64)) / 2.0),
         psnr_db=_psnr(found.psnr_db, noise.psnr_db + 10.0 * math.log10(4.0)),
         relmse=_figure(found.relmse, noise.relmse / 4.0),
-        mean_ratio=_ratio(found.mean_ratio, half_a, half_b),
+        mean_ratio=_ratio(found.mean_ratio, half_a[counted], half_b[counted]),
         p95=_figure(found.relative_error_p95, noise.relative_error_p95 / 2.0),
-        relmse_noise_free=relmse_without_reference_noise(picture, half_a, half_b),
+        relmse_noise_free=relmse_without_reference_noise(picture[counted], half_a[counted], half_b[counted]),
         flip_start_ev=exposures.start_ev,
         flip_stop_ev=exposures.stop_ev,
-        error=flip(picture, reference, exposures).error,
+        error=flip_where(picture, reference, counted, exposures),
+        scene_share=float(counted.mean()),
+        whole_flip=whole,
     )
 
 
