@@ -106,7 +106,7 @@ class Page:
         while not (value := self._value_if_there(expression, ends_at)):
             if time.monotonic() > ends_at:
                 said = f"; it says: {' / '.join(self.complaints[-3:])}" if self.complaints else ""
-                raise BrowserError(f"the page isn't ready after {timeout_s:g} s{said}")
+                raise BrowserError(f"the page isn't ready after {timeout_s:.3g} s{said}")
             self._listen(_POLL_S)
         return value
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -16,6 +15,7 @@ import numpy as np
 
 from irradia.cli.gallery_browser import BrowserError, Page, open_page
 from irradia.cli.gallery_socket import SocketError
+from irradia.cli.gallery_viewer import exposure_ev, show, viewer_picture
 from irradia.cli.view_server import Library, ViewServer
 from irradia.core.errors import InputError
 from irradia.core.files import write_atomic
@@ -27,16 +27,6 @@ from irradia.report import text
 from irradia.report.contact import Contact, contact_page, contact_sheet
 from irradia.scene.framing import DEFAULT_ASPECT
 from irradia.scene.types import Camera
-
-_STATE = 'document.documentElement?.dataset.state === "%s"'
-# The viewer's own picture: one of the page would wait for a moment in which nothing is drawn.
-_PICTURE = """irradiaViewer.picture().then((blob) => new Promise((resolve, reject) => {
-  const reader = new FileReader();
-  reader.onload = () => resolve(reader.result.slice(reader.result.indexOf(",") + 1));
-  reader.onerror = () => reject(reader.error);
-  reader.readAsDataURL(blob);
-}))"""
-_ENDED = f"{_STATE % 'ready'} || {_STATE % 'error'}"
 
 
 @dataclass(frozen=True)
@@ -222,20 +212,10 @@ def _take_all(
 def _take(page: Page, url: str, shot: Shot, timeout_s: float) -> Taken:
     """One picture, or why there is none."""
     try:
-        page.go(url)
-        page.wait_for(_ENDED, timeout_s)
-        if page.evaluate(_STATE % "error"):
-            said = page.evaluate("document.documentElement.dataset.message")
-            return Taken(shot, problem=said or "the viewer can't show it")
-        return Taken(shot, base64.b64decode(page.evaluate(_PICTURE, timeout_s)), _exposure(page))
+        show(page, url, timeout_s)
+        return Taken(shot, viewer_picture(page, timeout_s), exposure_ev(page))
     except (BrowserError, SocketError) as error:
         return Taken(shot, problem=str(error))
-
-
-def _exposure(page: Page) -> float | None:
-    """That of the picture on show, if the viewer tells."""
-    said = page.evaluate("Number.parseFloat(document.documentElement.dataset.ev)")
-    return said if isinstance(said, (int, float)) and math.isfinite(said) else None
 
 
 def _damage(field: WebField) -> str:
