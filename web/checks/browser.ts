@@ -9,6 +9,7 @@ import { chromium, type Page } from "playwright-core";
 const WEB = path.resolve(path.dirname(fileURLToPath(import.meta.url)), "../..");
 const TYPES: Record<string, string> = {
   ".html": "text/html",
+  ".css": "text/css",
   ".js": "text/javascript",
   ".mjs": "text/javascript",
   ".glb": "model/gltf-binary",

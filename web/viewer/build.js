@@ -2,13 +2,16 @@
  * Bundles the viewer into dist/: index.html, viewer.js, viewer.css. All addresses in them are relative, so
  * the folder can lie anywhere.
  *
- *   node build.js [--watch]
+ *   node build.js [--out DIR] [--watch]
  */
 import { cpSync, mkdirSync } from "node:fs";
 import { fileURLToPath } from "node:url";
+import { parseArgs } from "node:util";
 import { context } from "esbuild";
 
 const here = fileURLToPath(new URL(".", import.meta.url));
+const { values } = parseArgs({ options: { out: { type: "string" }, watch: { type: "boolean" } } });
+const out = values.out ?? `${here}dist`;
 /** Addons import "three", which is WebGLRenderer with all of its shaders; this page has no use for those. */
 const oneThree = {
   name: "one three",
@@ -21,7 +24,7 @@ const oneThree = {
 const bundle = await context({
   absWorkingDir: here,
   entryPoints: { viewer: "src/main.ts" },
-  outdir: "dist",
+  outdir: out,
   bundle: true,
   minify: true,
   format: "esm",
@@ -33,15 +36,15 @@ const bundle = await context({
 const styles = await context({
   absWorkingDir: here,
   entryPoints: { viewer: "src/style/index.css" },
-  outdir: "dist",
+  outdir: out,
   bundle: true,
   minify: true,
   logLevel: "warning",
 });
-mkdirSync(`${here}dist`, { recursive: true });
-cpSync(`${here}index.html`, `${here}dist/index.html`);
+mkdirSync(out, { recursive: true });
+cpSync(`${here}index.html`, `${out}/index.html`);
 for (const one of [bundle, styles]) {
   await one.rebuild();
-  if (process.argv.includes("--watch")) await one.watch();
+  if (values.watch) await one.watch();
   else await one.dispose();
 }

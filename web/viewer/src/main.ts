@@ -35,6 +35,6 @@ async function start(): Promise<void> {
   if (entry) await app.session.openManifest(entry);
   else if (scene !== "") await app.session.openUrl(scene);
   for (const url of [field, environment]) if (url !== "") await app.session.openUrl(url);
-  if (options.pose !== undefined) app.lookFromNumber(options.pose);
+  if (options.pose !== undefined) app.lookFromPicture(options.pose);
   await app.settled();
 }

@@ -15,6 +15,7 @@ import {
   type Texture,
 } from "three/webgpu";
 import type { NamedFile } from "./kinds.js";
+import { linearFromSrgb, unshoulder } from "./shoulder.js";
 
 export interface Picture {
   readonly name: string;
@@ -72,15 +73,6 @@ export async function readPicture(file: NamedFile, ev?: number): Promise<Picture
     texture: floatTexture(linear, width, height),
     isLinear: ev !== undefined,
   };
-}
-
-/** Undoes the roll-off of `irradia.core.colour.picture_srgb8`. */
-export function unshoulder(shown: number): number {
-  return shown <= 0.5 ? shown : (1 - Math.log(2 * (1 - Math.min(shown, 0.9999)))) / 2;
-}
-
-export function linearFromSrgb(coded: number): number {
-  return coded <= 0.04045 ? coded / 12.92 : ((coded + 0.055) / 1.055) ** 2.4;
 }
 
 function pixelsOf(bitmap: ImageBitmap): Uint8ClampedArray {

@@ -7,7 +7,9 @@ import { el, iconButton } from "./dom.js";
 export function problems(status: Store<Status>): HTMLElement {
   const element = el("div", { class: "problems", role: "alert" });
   const close = (problem: Problem): void => {
-    status.set({ problems: status.value.problems.filter((one) => one !== problem) });
+    const left = status.value.problems.filter((one) => one !== problem);
+    const phase = status.value.model ? "ready" : "empty";
+    status.set(left.length > 0 ? { problems: left } : { problems: left, phase, message: "" });
   };
   status.watch(
     ({ problems: all }) => all,

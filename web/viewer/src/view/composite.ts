@@ -17,7 +17,7 @@ import type { Node, RenderTarget, Texture, WebGPURenderer } from "three/webgpu";
 import type { Comparison, Tone } from "../state/state.js";
 import { type Difference, ErrorPicture } from "./error-picture.js";
 import { FullScreen } from "./quad.js";
-import { coded, displayed, type SideNodes } from "./tone.js";
+import { coded, displayed, type Reading, ReadSide, type SideNodes } from "./tone.js";
 
 /** Of FLIP from 0 to 1, sRGB: those of our reports. */
 const ERROR_COLOURS = [
@@ -36,23 +36,23 @@ export interface CompositeOptions {
   readonly ev: number;
   readonly split: number;
   readonly gain: number;
-  /** Whether a side's numbers are shown as they are. */
-  readonly isDisplay: readonly [left: boolean, right: boolean];
+  /** What the sides' numbers are. */
+  readonly readings: readonly [left: Reading, right: Reading];
 }
 
 export class Composite {
   readonly #exposure = uniform(1);
   readonly #split = uniform(0.5);
   readonly #gain = uniform(1);
-  readonly #left: SideNodes & { isDisplay: { value: number } };
-  readonly #right: SideNodes & { isDisplay: { value: number } };
+  readonly #left: ReadSide;
+  readonly #right: ReadSide;
   readonly #passes = new Map<string, FullScreen>();
   readonly #errors = new Map<Tone, ErrorPicture>();
   #size: readonly [number, number] = [1, 1];
 
   constructor(left: Texture, right: Texture) {
-    this.#left = { texel: texture(left, screenUV), isDisplay: uniform(0) };
-    this.#right = { texel: texture(right, screenUV), isDisplay: uniform(0) };
+    this.#left = new ReadSide(left);
+    this.#right = new ReadSide(right);
   }
 
   setSize(width: number, height: number): void {
@@ -78,12 +78,12 @@ export class Composite {
     for (const error of this.#errors.values()) error.dispose();
   }
 
-  #bind({ ev, split, gain, isDisplay }: CompositeOptions): void {
+  #bind({ ev, split, gain, readings }: CompositeOptions): void {
     this.#exposure.value = 2 ** ev;
     this.#split.value = split;
     this.#gain.value = gain;
-    this.#left.isDisplay.value = isDisplay[0] ? 1 : 0;
-    this.#right.isDisplay.value = isDisplay[1] ? 1 : 0;
+    this.#left.reading = readings[0];
+    this.#right.reading = readings[1];
   }
 
   #pass({ compare, tone }: CompositeOptions): FullScreen {

@@ -8,13 +8,14 @@ import type { Difference } from "./error-picture.js";
 import { automaticEv } from "./exposure.js";
 import { FullScreen, makeTarget, texelOf } from "./quad.js";
 import { ReferencePass } from "./reference-pass.js";
+import type { Reading } from "./tone.js";
 
 /** What one side shows. */
 export type Side =
   | { readonly kind: "picture"; readonly picture: Picture }
   | { readonly kind: "light"; readonly source: string };
 
-export interface FrameOptions extends Omit<CompositeOptions, "isDisplay"> {
+export interface FrameOptions extends Omit<CompositeOptions, "readings"> {
   readonly left: Side;
   readonly right: Side;
   readonly view: View;
@@ -24,8 +25,6 @@ export interface FrameOptions extends Omit<CompositeOptions, "isDisplay"> {
 
 /** Texels that automatic exposure looks at, across and down. */
 const [METER_WIDTH, METER_HEIGHT] = [96, 54];
-/** Views whose numbers are light, and so need exposure. */
-const LIT_VIEWS: readonly View[] = ["light", "irradiance"];
 const SAMPLES = 4;
 
 export class Frame {
@@ -109,15 +108,21 @@ function showSource(light: SceneLight, name: string, view: View): void {
   light.view = lightView(view);
 }
 
-function compositeOptions(options: FrameOptions): CompositeOptions {
-  return {
-    ...options,
-    isDisplay: [isDisplay(options.left, options.view), isDisplay(options.right, options.view)],
-  };
+/** Whether a view's numbers are light, and so need exposure. */
+export function isLit(view: View): boolean {
+  return view === "light" || view === "irradiance" || view === "unclamped";
 }
 
-function isDisplay(side: Side, view: View): boolean {
-  return side.kind === "picture" ? !side.picture.isLinear : !LIT_VIEWS.includes(view);
+function compositeOptions(options: FrameOptions): CompositeOptions {
+  const { left, right, view } = options;
+  return { ...options, readings: [readingOf(left, view), readingOf(right, view)] };
+}
+
+function readingOf(side: Side, view: View): Reading {
+  if (side.kind === "picture") return side.picture.isLinear ? "light" : "display";
+  if (view === "unclamped") return "irradiance";
+  if (view === "raw") return "signed";
+  return isLit(view) ? "light" : "display";
 }
 
 /** A view by its name in @irradia/three; null is the picture. */

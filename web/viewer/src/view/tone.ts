@@ -1,17 +1,22 @@
 /** From linear light to what a display shows, as nodes. */
 
 import {
+  abs,
   acesFilmicToneMapping,
   agxToneMapping,
   clamp,
   float,
+  max,
   mix,
   neutralToneMapping,
+  screenUV,
   sRGBTransferOETF,
+  texture,
+  uniform,
   vec3,
   vec4,
 } from "three/tsl";
-import type { Node } from "three/webgpu";
+import type { Node, Texture } from "three/webgpu";
 import type { Tone } from "../state/state.js";
 
 /** Behind a scene that ends; coded sRGB. */
@@ -24,12 +29,39 @@ const CURVES: Record<Tone, (colour: Node<"vec3">) => Node<"vec3">> = {
   linear: (colour) => clamp(colour, 0, 1),
 };
 
-/** How one side's picture is to be read. */
+/**
+ * What a picture's numbers are: light, E, numbers that displays show as they are, or numbers of either sign,
+ * which are squeezed between black and white.
+ */
+export type Reading = "light" | "irradiance" | "display" | "signed";
+
+/** One side's picture, and how it is to be read. */
 export interface SideNodes {
-  /** Linear, multiplied by alpha. */
+  /** Multiplied by alpha. */
   readonly texel: Node<"vec4">;
-  /** 1 where its numbers are shown as they are: debug views, and pictures that were tone-mapped before. */
+  /** To light; 1, or for E 1/π. */
+  readonly factor: Node<"float">;
+  /** 1 where numbers are shown without exposure and curve. */
   readonly isDisplay: Node<"float">;
+  readonly isSigned: Node<"float">;
+}
+
+/** A side whose reading can change from frame to frame. */
+export class ReadSide implements SideNodes {
+  readonly texel: Node<"vec4">;
+  readonly factor = uniform(1);
+  readonly isDisplay = uniform(0);
+  readonly isSigned = uniform(0);
+
+  constructor(picture: Texture) {
+    this.texel = texture(picture, screenUV);
+  }
+
+  set reading(reading: Reading) {
+    this.factor.value = reading === "irradiance" ? 1 / Math.PI : 1;
+    this.isSigned.value = reading === "signed" ? 1 : 0;
+    this.isDisplay.value = reading === "signed" || reading === "display" ? 1 : 0;
+  }
 }
 
 /**
@@ -40,9 +72,11 @@ export interface SideNodes {
  */
 export function displayed(side: SideNodes, tone: Tone, exposure: Node<"float">): Node<"vec4"> {
   const alpha = side.texel.a;
-  const colour = side.texel.rgb.div(alpha.max(1e-4));
-  const toned = clamp(CURVES[tone](colour.mul(exposure)), 0, 1);
-  return vec4(mix(toned, clamp(colour, 0, 1), side.isDisplay), alpha);
+  const colour = side.texel.rgb.div(alpha.max(1e-4)).mul(side.factor);
+  const toned = clamp(CURVES[tone](max(colour, 0).mul(exposure)), 0, 1);
+  const squeezed = colour.div(abs(colour).add(1)).mul(0.5).add(0.5);
+  const plain = clamp(mix(colour, squeezed, side.isSigned), 0, 1);
+  return vec4(mix(toned, plain, side.isDisplay), alpha);
 }
 
 /** Coded sRGB over the backdrop. */

@@ -1,0 +1,109 @@
+/** Drives the viewer in a browser as a person would, and looks at what comes of it. */
+import type { Page } from "playwright-core";
+
+/** What the page offers to scripts; `web/viewer/src/main.ts` puts it there. */
+interface Viewer {
+  readonly ready: Promise<void>;
+  readonly state: { readonly value: Record<string, unknown>; set(patch: Record<string, unknown>): void };
+  readonly status: {
+    readonly value: Record<string, unknown> & { readonly phase: string };
+    subscribe(listener: (now: { readonly phase: string }) => void): () => void;
+  };
+  picture(): Promise<Blob>;
+  settled(): Promise<void>;
+}
+
+declare global {
+  var irradiaViewer: Viewer;
+}
+
+/** What `<html data-…>` says. */
+export type Told = Readonly<Record<string, string | undefined>>;
+
+export class Driver {
+  /** Everything that the page said on the console, and what it threw. */
+  readonly complaints: string[] = [];
+
+  constructor(
+    readonly page: Page,
+    readonly base: string,
+  ) {
+    page.on("console", (message) => this.complaints.push(`${message.type()}: ${message.text()}`));
+    page.on("pageerror", (error) => this.complaints.push(String(error.stack)));
+  }
+
+  /** Opens the viewer anew. */
+  async open(query: string): Promise<Told> {
+    await this.page.goto("about:blank");
+    await this.page.goto(`${this.base}${query}`);
+    await this.page.waitForFunction("globalThis.irradiaViewer");
+    await this.page.evaluate(() => irradiaViewer.ready);
+    return this.told();
+  }
+
+  /** Drops files that are served under these addresses; waits until the page has made of them what it can. */
+  async drop(...addresses: string[]): Promise<Told> {
+    await this.page.evaluate(dropped, addresses);
+    await this.page.evaluate(() => irradiaViewer.settled());
+    return this.told();
+  }
+
+  async set(patch: Record<string, unknown>): Promise<void> {
+    await this.page.evaluate(async (wanted) => {
+      irradiaViewer.state.set(wanted);
+      await irradiaViewer.settled();
+    }, patch);
+  }
+
+  async settled(): Promise<void> {
+    await this.page.evaluate(() => irradiaViewer.settled());
+  }
+
+  /** The canvas as PNG, base64. */
+  picture(): Promise<string> {
+    return this.page.evaluate(async () => {
+      const bytes = new Uint8Array(await (await irradiaViewer.picture()).arrayBuffer());
+      return btoa(bytes.reduce((text, byte) => text + String.fromCharCode(byte), ""));
+    });
+  }
+
+  told(): Promise<Told> {
+    return this.page.evaluate(() => ({ ...document.documentElement.dataset }));
+  }
+
+  /** A key of the page's status that JSON can hold. */
+  status(key: string): Promise<unknown> {
+    return this.page.evaluate((name) => irradiaViewer.status.value[name], key);
+  }
+
+  state(): Promise<Record<string, unknown>> {
+    return this.page.evaluate(() => irradiaViewer.state.value);
+  }
+
+  /** The words of all elements that match. */
+  texts(selector: string): Promise<string[]> {
+    return this.page.locator(selector).allInnerTexts();
+  }
+}
+
+async function dropped(addresses: string[]): Promise<void> {
+  const transfer = new DataTransfer();
+  for (const address of addresses) {
+    const bytes = await (await fetch(address)).arrayBuffer();
+    transfer.items.add(new File([bytes], address.split("/").at(-1) ?? address));
+  }
+  let hasBegun = false;
+  const done = new Promise<void>((resolve) => {
+    const end = irradiaViewer.status.subscribe(({ phase }) => {
+      hasBegun ||= phase === "loading";
+      if (!hasBegun || (phase === "loading" && !isOver())) return;
+      end();
+      resolve();
+    });
+  });
+  const isOver = (): boolean => irradiaViewer.status.value.message === "";
+  const options = { dataTransfer: transfer, bubbles: true, cancelable: true };
+  document.body.dispatchEvent(new DragEvent("dragenter", options));
+  document.body.dispatchEvent(new DragEvent("drop", options));
+  await done;
+}

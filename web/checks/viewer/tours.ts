@@ -1,0 +1,233 @@
+/** What tests look at, several things in one browser, as a browser takes its time to start. */
+import type { Driver, Told } from "./driver.js";
+
+type Tour = (driver: Driver) => Promise<Record<string, unknown>>;
+
+const SCENE = "/files/scene.glb";
+/** Files that aren't what they say; tests/web/viewer_files.py makes them. */
+const HOSTILE = [
+  "cut.glb",
+  "no-json.glb",
+  "light.glb",
+  "cut.safetensors",
+  "cut.safetensors.zst",
+  "infinite.safetensors",
+  "cut.bin",
+  "cut.hdr",
+  "cut.exr",
+  "cut.png",
+  "notes.txt",
+  "empty.glb",
+];
+
+/** Drag and drop of every kind of file. */
+async function drops(driver: Driver): Promise<Record<string, unknown>> {
+  const ids = async (): Promise<unknown> => driver.page.evaluate(choiceIds);
+  const told: Record<string, Told> = { empty: await driver.open("") };
+  const invitation = await driver.texts(".invitation h1");
+  told.early = await driver.drop("/files/field.safetensors");
+  const early = await driver.texts(".problem");
+  told.scene = await driver.drop(SCENE);
+  const first = { ids: await ids(), picture: await driver.picture() };
+  await driver.drop("/files/field.safetensors", "/files/field.safetensors.zst", "/files/field.bin");
+  const afterFields = await ids();
+  await driver.drop("/files/render.png", "/files/render.hdr", "/files/render.exr");
+  const afterPictures = await ids();
+  await driver.set({ left: "none" });
+  const dark = await driver.picture();
+  told.sky = await driver.drop("/files/sky.hdr");
+  const sky = await driver.picture();
+  await driver.drop("/files/camera.json");
+  const { camera } = await driver.state();
+  return { told, invitation, early, first, afterFields, afterPictures, dark, sky, camera };
+}
+
+/** Two sides: the slider, the difference, FLIP. */
+async function sides(driver: Driver): Promise<Record<string, unknown>> {
+  await driver.open(`?scene=${SCENE}&left=lightmap&right=field&panel=0&ev=0&tone=linear`);
+  const pictures: Record<string, string> = { lightmap: await driver.picture() };
+  await driver.set({ left: "field" });
+  pictures.field = await driver.picture();
+  await driver.set({ left: "lightmap", compare: "split", split: 0.25 });
+  pictures.split = await driver.picture();
+  await driver.page.locator(".handle").hover();
+  await driver.page.mouse.down();
+  await driver.page.mouse.move(192, 100);
+  await driver.page.mouse.up();
+  const { split } = await driver.state();
+  await driver.set({ compare: "difference", gain: 4 });
+  pictures.difference = await driver.picture();
+  const numbers = await driver.status("difference");
+  await driver.set({ compare: "error" });
+  pictures.error = await driver.picture();
+  const shown = await driver.texts(".numbers");
+  await driver.set({ right: "lightmap" });
+  const same = await driver.status("difference");
+  pictures.noError = await driver.picture();
+  return { pictures, split, numbers, shown, same };
+}
+
+/** Each view, of the field and of the lightmap. */
+async function views(driver: Driver): Promise<Record<string, unknown>> {
+  await driver.open(`?scene=${SCENE}&left=field&panel=0`);
+  const possible = { field: await driver.status("views") };
+  const pictures: Record<string, string> = {};
+  for (const view of possible.field as string[]) {
+    await driver.set({ view });
+    pictures[view] = await driver.picture();
+  }
+  await driver.set({ view: "light", left: "probes" });
+  const ofProbes = await driver.status("views");
+  await driver.set({ view: "validity" });
+  pictures.validity = await driver.picture();
+  await driver.set({ view: "light" });
+  for (const probes of ["off", "irradiance", "direction", "dc", "validity"]) {
+    await driver.set({ probes });
+    pictures[`probes ${probes}`] = await driver.picture();
+  }
+  await driver.set({ probes: "off" });
+  for (const pass of ["full", "half"]) {
+    await driver.set({ pass, left: "field" });
+    pictures[`pass ${pass}`] = await driver.picture();
+  }
+  return { possible: { ...possible, probes: ofProbes }, pictures };
+}
+
+/** A link shows what its sender saw. */
+async function links(driver: Driver): Promise<Record<string, unknown>> {
+  await driver.open(`?scene=${SCENE}`);
+  const camera = { eye: [0.3, 0.3, -0.4], target: [0.25, 0.2, 0.3], yfovDeg: 50 };
+  const wanted = { left: "field", right: "probes", compare: "split", split: 0.3, tone: "aces", ev: 0.5 };
+  await driver.set({ ...wanted, camera, object: "sphere", place: [0.3, 0.2, 0.2], panel: false });
+  const before = { state: await driver.state(), picture: await driver.picture() };
+  await driver.page.waitForFunction(() => location.hash.includes("tone=aces"));
+  const hash = await driver.page.evaluate(() => location.hash);
+  await driver.open(hash);
+  const after = { state: await driver.state(), picture: await driver.picture() };
+  await driver.page.evaluate(() => {
+    location.hash = location.hash.replace("tone=aces", "tone=agx");
+  });
+  await driver.page.waitForFunction(() => irradiaViewer.state.value.tone === "agx");
+  return { hash, before, after };
+}
+
+/** Files that are damaged; the scene before stays. */
+async function hostile(driver: Driver): Promise<Record<string, unknown>> {
+  await driver.open(`?scene=${SCENE}`);
+  const before = await driver.picture();
+  const panels: Record<string, unknown> = {};
+  for (const file of HOSTILE) {
+    const told = await driver.drop(`/files/${file}`);
+    panels[file] = { told, texts: await driver.texts(".problem") };
+  }
+  await driver.page.locator(".problem button").first().click();
+  const closed = await driver.texts(".problem");
+  const after = await driver.picture();
+  const lost = await driver.open("?scene=/files/nowhere.glb");
+  return { before, after, panels, closed, lost, lostTexts: await driver.texts(".problem") };
+}
+
+/** Hands on the picture: keys, pointer, fingers, windows of other sizes. */
+async function hands(driver: Driver): Promise<Record<string, unknown>> {
+  const { page } = driver;
+  await driver.open(`?scene=${SCENE}&left=lightmap&panel=0&object=sphere&place=0.28,0.27,-0.2`);
+  const places = [(await driver.state()).place];
+  await page.mouse.move(128, 44 + 72);
+  await page.mouse.down();
+  await page.mouse.move(150, 44 + 72);
+  await page.mouse.up();
+  await driver.settled();
+  places.push((await driver.state()).place);
+  const still = (await driver.state()).camera;
+  await page.mouse.move(40, 100);
+  await page.mouse.down();
+  await page.mouse.move(60, 110, { steps: 4 });
+  await page.mouse.up();
+  await driver.settled();
+  const orbited = (await driver.state()).camera;
+  await page.keyboard.press("2");
+  await page.keyboard.down("w");
+  await page.waitForTimeout(300);
+  await page.keyboard.up("w");
+  await driver.settled();
+  const flown = (await driver.state()).camera;
+  await page.keyboard.press("3");
+  await page.waitForTimeout(1500);
+  await driver.settled();
+  const walked = (await driver.state()).camera;
+  await page.keyboard.press("c");
+  await page.keyboard.press("?");
+  const isHelpOpen = await page.locator("dialog.help").isVisible();
+  await page.keyboard.press("Escape");
+  const { compare, navigation } = await driver.state();
+  await page.setViewportSize({ width: 200, height: 300 });
+  await driver.settled();
+  const size = await page.evaluate(canvasSize);
+  await page.keyboard.press("n");
+  const panel = await page.locator(".panel").boundingBox();
+  const statistics = await driver.status("statistics");
+  return { places, still, orbited, flown, walked, isHelpOpen, compare, navigation, size, panel, statistics };
+}
+
+/** A browser without WebGPU, whose context is lost as well. */
+async function webgl2(driver: Driver): Promise<Record<string, unknown>> {
+  await driver.page.addInitScript("Object.defineProperty(Navigator.prototype, 'gpu', { value: undefined })");
+  const told = await driver.open(`?scene=${SCENE}&left=directional&right=field&compare=split&panel=0`);
+  const before = await driver.picture();
+  await driver.set({ compare: "error" });
+  const difference = await driver.status("difference");
+  await driver.set({ compare: "split" });
+  const messages = await driver.page.evaluate(loseContext);
+  await driver.settled();
+  return {
+    told,
+    before,
+    difference,
+    messages,
+    after: await driver.picture(),
+    recovered: await driver.told(),
+  };
+}
+
+/** A page that holds its scene itself, and a kiosk. */
+async function kept(driver: Driver): Promise<Record<string, unknown>> {
+  const base = driver.base.replace("/built/", "/kept/");
+  await driver.page.goto(`${base}?kiosk=1&view=0`);
+  await driver.page.waitForFunction("globalThis.irradiaViewer");
+  await driver.page.evaluate(() => irradiaViewer.ready);
+  const chrome = await driver.page.locator(".bar, .panel").count();
+  const { camera } = await driver.state();
+  return { told: await driver.told(), choices: await driver.page.evaluate(choiceIds), chrome, camera };
+}
+
+export const TOURS: Readonly<Record<string, Tour>> = {
+  drops,
+  sides,
+  views,
+  links,
+  hostile,
+  hands,
+  webgl2,
+  kept,
+};
+
+function choiceIds(): string[] {
+  return (irradiaViewer.status.value.choices as { id: string }[]).map(({ id }) => id);
+}
+
+function canvasSize(): { canvas: number[]; layout: number[] } {
+  const canvas = document.querySelector("canvas");
+  const { clientWidth, clientHeight } = canvas ?? { clientWidth: 0, clientHeight: 0 };
+  return { canvas: [canvas?.width ?? 0, canvas?.height ?? 0], layout: [clientWidth, clientHeight] };
+}
+
+/** @returns what the page says until it has a context again */
+async function loseContext(): Promise<string[]> {
+  const messages: string[] = [];
+  const end = irradiaViewer.status.subscribe(() => messages.push(String(irradiaViewer.status.value.message)));
+  const canvas = document.querySelector("canvas");
+  canvas?.getContext("webgl2")?.getExtension("WEBGL_lose_context")?.loseContext();
+  while (document.querySelector("canvas") === canvas) await new Promise((resolve) => setTimeout(resolve, 20));
+  end();
+  return messages;
+}
