@@ -5,6 +5,8 @@ from __future__ import annotations
 import itertools
 import re
 
+import pytest
+
 from irradia.report import charts
 from irradia.report.data import Convergence
 
@@ -21,6 +23,19 @@ def test_the_bar_is_cut_in_proportion():
 
 def test_no_times_is_said():
     assert "No times" in charts.stage_bar({})
+
+
+def test_short_stages_share_a_row_and_no_time_is_lost():
+    stages = {f"stage {i}": 10.0 + i for i in range(12)} | {f"step {i}": 0.01 for i in range(20)}
+    bar = charts.stage_bar(stages)
+    rows = re.findall(r"</i>([^<]*)</td>", bar)
+    assert rows == [*(f"stage {i}" for i in range(4, 12)), "24 shorter stages"]
+    grown = [float(share) for share in re.findall(r"flex-grow:([\d.]+)", bar)]
+    assert sum(grown) == pytest.approx(1.0, abs=1e-4)
+
+
+def test_one_short_stage_keeps_its_name():
+    assert "shorter" not in charts.stage_bar({"trace": 1000.0, "write": 0.1})
 
 
 def test_each_doubling_of_samples_is_one_step_to_the_right():

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 
+import numpy as np
 import pytest
 
-from irradia.report.scatter import Curve, Dot, curves_plot, pareto_front, scatter_plot
+from irradia.report.scatter import Curve, Dot, curves_plot, evened, pareto_front, scatter_plot
 
 DOTS = [
     Dot(1.0, 8.0, "small", "a"),
@@ -52,3 +54,30 @@ def test_names_are_escaped():
 
 def test_points_without_a_logarithm_are_left_out():
     assert curves_plot([Curve("c", "a", [(0.0, 1.0), (1.0, 0.0)])], "x", "y") == ""
+
+
+def _noisy(name: str, level: float) -> Curve:
+    rng = np.random.default_rng(len(name))
+    steps = np.arange(1, 2001)
+    return Curve(name, "hash", [(float(s), level / s**0.5 * float(rng.lognormal(0.0, 0.5))) for s in steps])
+
+
+def test_a_noisy_curve_is_drawn_by_few_points_on_its_course():
+    points = evened(_noisy("a", 1.0).points)
+    assert 10 < len(points) <= 40
+    course = [y * x**0.5 for x, y in points]
+    assert all(0.8 < c < 1.25 for c in course[20:])
+    few = [(1.0, 2.0), (10.0, 1.0)]
+    assert evened(few) == [pytest.approx(point) for point in few]
+
+
+def test_chosen_curves_stand_out_and_are_named_without_touching():
+    names = ["good", "as good", "a name so long that it wouldn't fit beside its curve", "bad"]
+    svg = curves_plot([_noisy(name, 1.0 + 0.001 * i) for i, name in enumerate(names)], "s", "l", names[:3])
+    assert svg.count('strong"') == 3
+    assert svg.index("<title>bad") < svg.index("<title>good")  # faint ones lie behind
+    ys = sorted(float(y) for y in re.findall(r'class="name" x="[\d.]+" y="([\d.]+)"', svg))
+    assert len(ys) == 3
+    assert min(b - a for a, b in itertools.pairwise(ys)) >= 13.9
+    assert ">a name so long that it …<" in svg
+    assert "<title>a name so long that it wouldn&#x27;t fit beside its curve</title>" in svg

@@ -12,16 +12,20 @@ from irradia.report.data import Convergence
 _WIDTH, _HEIGHT = 640, 240
 _LEFT, _RIGHT, _TOP, _BOTTOM = 64, 16, 16, 40
 _TOLERANCE = 0.01  # the band drawn about a ratio of one
+_MOST_STAGES, _LEAST_SHARE = 8, 0.02  # of a bar: more rows than that say no more
 _SHADES = 6  # classes shade-0 … shade-5 in the style sheet
 
 
 def stage_bar(stage_s: Mapping[str, float]) -> str:
-    """Wall time by stage: one bar cut in proportion, with a legend that holds the numbers."""
+    """Wall time by stage: one bar cut in proportion, with a legend that holds the numbers.
+
+    The longest have a row each, in the order in which they ran; the others have one together.
+    """
     total = sum(stage_s.values())
     if total <= 0:
         return '<p class="quiet">No times were taken.</p>'
     parts, rows = [], []
-    for index, (name, seconds) in enumerate(stage_s.items()):
+    for index, (name, seconds) in enumerate(_longest(stage_s, total).items()):
         shade = f"shade-{index % _SHADES}"
         title = f"{escape(name)}: {text.duration(seconds)}"
         parts.append(f'<span class="{shade}" style="flex-grow:{seconds / total:.5f}" title="{title}"></span>')
@@ -31,6 +35,17 @@ def stage_bar(stage_s: Mapping[str, float]) -> str:
         )
     table = f'<table class="numbers">{"".join(rows)}</table>'
     return f'<div class="bar" role="img" aria-label="Time by stage">{"".join(parts)}</div>{table}'
+
+
+def _longest(stage_s: Mapping[str, float], total: float) -> dict[str, float]:
+    """Stages worth a row, and the sum of the rest where that is of several."""
+    ranked = sorted(stage_s, key=lambda name: -stage_s[name])[:_MOST_STAGES]
+    kept = {name for name in ranked if stage_s[name] >= _LEAST_SHARE * total}
+    rest = [seconds for name, seconds in stage_s.items() if name not in kept]
+    if len(rest) < 2:
+        return dict(stage_s)
+    long = {name: seconds for name, seconds in stage_s.items() if name in kept}
+    return long | {f"{len(rest)} shorter stages": sum(rest)}
 
 
 def mean_ratio_plot(convergence: Convergence) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
 
@@ -11,6 +11,8 @@ _WIDTH, _HEIGHT = 640, 400
 _LEFT, _RIGHT, _TOP, _BOTTOM = 70, 16, 34, 46
 _N_SHADES = 6  # classes shade-0 … shade-5 of the style sheet
 _DOT_PX = 4.5
+_MOST_POINTS = 40  # of a curve
+_NAMES_PX, _NAME_LETTERS, _LINE_PX = 170, 24, 14.0  # of names beside curves
 # Ticks within a decade of an axis that spans fewer decades than this.
 _TICKS = (
     (0.35, (1, 1.1, 1.25, 1.5, 1.75, 2, 2.25, 2.5, 3, 3.5, 4, 4.5, 5, 6, 7, 8, 9)),
@@ -91,27 +93,66 @@ def scatter_plot(dots: Sequence[Dot], x_label: str, y_label: str) -> str:
     return _frame(px, py, x_label, y_label, groups, f'<polyline points="{line}"/>{marks}')
 
 
-def curves_plot(curves: Sequence[Curve], x_label: str, y_label: str) -> str:
-    """Curves in their groups' colours."""
-    drawn = [Curve(c.name, c.group, [(x, y) for x, y in c.points if x > 0 and y > 0]) for c in curves]
-    drawn = [curve for curve in drawn if curve.points]
+def curves_plot(curves: Sequence[Curve], x_label: str, y_label: str, strong: Collection[str] = ()) -> str:
+    """Curves in their groups' colours, each evened so that its course is seen through its noise.
+
+    Args:
+        curves: Courses.
+        x_label: Of the horizontal axis.
+        y_label: Of the vertical one.
+        strong: Names of those that stand out, and are named where they end; the others stay faint.
+    """
+    drawn = [Curve(curve.name, curve.group, evened(curve.points)) for curve in curves]
+    drawn = sorted((curve for curve in drawn if curve.points), key=lambda curve: curve.name in strong)
     if not drawn:
         return ""
     every = [point for curve in drawn for point in curve.points]
-    px, py = _axes([x for x, _ in every], [y for _, y in every])
+    right = _NAMES_PX if any(curve.name in strong for curve in drawn) else _RIGHT
+    px, py = _axes([x for x, _ in every], [y for _, y in every], right)
     groups = _groups(curve.group for curve in drawn)
     lines = "".join(
-        f'<polyline class="line-{groups[curve.group]}" '
+        f'<polyline class="line-{groups[curve.group]}{" strong" if curve.name in strong else ""}" '
         f'points="{" ".join(f"{px(x):.1f},{py(y):.1f}" for x, y in curve.points)}">'
         f"<title>{escape(curve.name)}</title></polyline>"
         for curve in drawn
     )
-    return _frame(px, py, x_label, y_label, groups, lines)
+    names = _names([(curve, py(curve.points[-1][1])) for curve in drawn if curve.name in strong])
+    return _frame(px, py, x_label, y_label, groups, lines + names)
 
 
-def _axes(xs: Sequence[float], ys: Sequence[float]) -> tuple[_Axis, _Axis]:
+def evened(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Geometric means over equal parts of the logarithm of x; what isn't above 0 is left out."""
+    kept = [(math.log(x), math.log(y)) for x, y in points if x > 0 and y > 0 and math.isfinite(y)]
+    if len(kept) <= _MOST_POINTS:
+        return [(math.exp(x), math.exp(y)) for x, y in kept]
+    low = min(x for x, _ in kept)
+    width = (max(x for x, _ in kept) - low) / _MOST_POINTS or 1.0
+    parts: dict[int, list[tuple[float, float]]] = {}
+    for x, y in kept:
+        parts.setdefault(min(int((x - low) / width), _MOST_POINTS - 1), []).append((x, y))
+    return [
+        (math.exp(sum(x for x, _ in part) / len(part)), math.exp(sum(y for _, y in part) / len(part)))
+        for _, part in sorted(parts.items())
+    ]
+
+
+def _names(ends: Sequence[tuple[Curve, float]]) -> str:
+    """Names beside where their curves end, moved apart where they would touch."""
+    written, free = [], float(_TOP)
+    for curve, y in sorted(ends, key=lambda end: end[1]):
+        free = max(y + 4.0, free)
+        name = curve.name if len(curve.name) <= _NAME_LETTERS else f"{curve.name[: _NAME_LETTERS - 1]}…"
+        written.append(
+            f'<text class="name" x="{_WIDTH - _NAMES_PX + 6}" y="{free:.1f}">{escape(name)}'
+            f"<title>{escape(curve.name)}</title></text>"
+        )
+        free += _LINE_PX
+    return "".join(written)
+
+
+def _axes(xs: Sequence[float], ys: Sequence[float], right: float = _RIGHT) -> tuple[_Axis, _Axis]:
     x, y = _reach(xs), _reach(ys)
-    return _Axis(*x, _LEFT, _WIDTH - _RIGHT), _Axis(*y, _HEIGHT - _BOTTOM, _TOP)
+    return _Axis(*x, _LEFT, _WIDTH - right), _Axis(*y, _HEIGHT - _BOTTOM, _TOP)
 
 
 def _reach(values: Sequence[float]) -> tuple[float, float]:
@@ -126,7 +167,7 @@ def _groups(names: Iterable[str]) -> dict[str, int]:
 
 def _frame(px: _Axis, py: _Axis, x_label: str, y_label: str, groups: dict[str, int], content: str) -> str:
     levels = "".join(
-        f'<line class="grid" x1="{_LEFT}" x2="{_WIDTH - _RIGHT}" y1="{py(v):.1f}" y2="{py(v):.1f}"/>'
+        f'<line class="grid" x1="{_LEFT}" x2="{px.end_px}" y1="{py(v):.1f}" y2="{py(v):.1f}"/>'
         f'<text class="left" x="{_LEFT - 8}" y="{py(v) + 4:.1f}">{_short(v)}</text>'
         for v in py.ticks()
     )
@@ -140,7 +181,7 @@ def _frame(px: _Axis, py: _Axis, x_label: str, y_label: str, groups: dict[str, i
         for i, (name, shade) in enumerate(groups.items())
     )
     label = f"{y_label} over {x_label}"
-    middle = (_LEFT + _WIDTH - _RIGHT) / 2
+    middle = (px.start_px + px.end_px) / 2
     return (
         f'<svg class="plot" viewBox="0 0 {_WIDTH} {_HEIGHT}" role="img" aria-label="{escape(label)}">'
         f"{levels}{ticks}{legend}{content}"

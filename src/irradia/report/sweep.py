@@ -34,6 +34,7 @@ _COLUMNS = {
     "flops": ("Operations a query", text.count),
     "queries_per_s": ("M queries/s", lambda v: f"{v / 1e6:.2f}"),
 }
+_NAMED_CURVES = 5
 # Horizontal axes of the drawings of error: column, label.
 _AXES = {
     "bytes": "bytes as shipped",
@@ -137,7 +138,12 @@ def _cell(column: str, value: Any) -> str:
 def _losses(data: SweepData) -> str:
     groups = {row["name"]: _encoding(row) for row in data.rows}
     curves = [Curve(name, groups.get(name, "hash"), points) for name, points in data.losses.items() if points]
-    return card(curves_plot(curves, "steps", "loss")) if curves else ""
+    if not curves:
+        return ""
+    done = [row for row in data.rows if row.get("status") == "done" and row["name"] in data.losses]
+    best = [row["name"] for row in sorted(done, key=error_of)[:_NAMED_CURVES]]
+    note = "Means over parts of each training; the fields of least relMSE are named, all are when pointed at."
+    return card(f'{curves_plot(curves, "steps", "loss", best)}<p class="quiet hint">{note}</p>')
 
 
 def _contact_sheet(data: SweepData) -> str:
