@@ -1,7 +1,7 @@
 // Generated from shaders/wgsl/perceptron.wgsl by `npm run shaders` in web/: don't edit.
 // needs: constants, width, activation
 
-uvec2 irradia_first_matrix = uvec2(0u);
+uvec2 irradia_first_matrix;
 
 void irradia_begin() {
     vec4 _e1 = irradia_constant(2u);

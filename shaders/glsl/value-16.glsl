@@ -1,7 +1,7 @@
 // Generated from shaders/wgsl/value-16.wgsl by `npm run shaders` in web/: don't edit.
 // needs: words, perceptron
 
-vec2 irradia_table_sums[4] = vec2[4](vec2(0.0), vec2(0.0), vec2(0.0), vec2(0.0));
+vec2 irradia_table_sums[4];
 
 void irradia_table_clear() {
     for (uint i = 0u; i < irradia_table_words; i += 1u) {

@@ -1,7 +1,7 @@
 // Generated from shaders/wgsl/value-32.wgsl by `npm run shaders` in web/: don't edit.
 // needs: words, perceptron
 
-vec4 irradia_table_sums = vec4(0.0);
+vec4 irradia_table_sums;
 
 void irradia_table_clear() {
     irradia_table_sums = vec4(0.0);

@@ -1,9 +1,9 @@
 // Generated from shaders/wgsl/value-4.wgsl by `npm run shaders` in web/: don't edit.
 // needs: words, perceptron, scales
 
-vec4 irradia_table_lower[4] = vec4[4](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+vec4 irradia_table_lower[4];
 
-vec4 irradia_table_upper[4] = vec4[4](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+vec4 irradia_table_upper[4];
 
 void irradia_table_clear() {
     for (uint i = 0u; i < irradia_table_words; i += 1u) {

@@ -6,6 +6,6 @@ const uint irradia_row_stride = 16u;
 
 const uint irradia_matrix = 64u;
 
-vec4 irradia_units[4] = vec4[4](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+vec4 irradia_units[4];
 
-vec4 irradia_sums[4] = vec4[4](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+vec4 irradia_sums[4];

@@ -6,6 +6,6 @@ const uint irradia_row_stride = 32u;
 
 const uint irradia_matrix = 256u;
 
-vec4 irradia_units[8] = vec4[8](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+vec4 irradia_units[8];
 
-vec4 irradia_sums[8] = vec4[8](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+vec4 irradia_sums[8];

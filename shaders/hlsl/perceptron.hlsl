@@ -1,7 +1,7 @@
 // Generated from shaders/wgsl/perceptron.wgsl by `npm run shaders` in web/: don't edit.
 // needs: constants, width, activation
 
-static uint2 irradia_first_matrix = (uint2)0;
+static uint2 irradia_first_matrix;
 
 void irradia_begin()
 {

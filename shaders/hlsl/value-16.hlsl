@@ -1,7 +1,7 @@
 // Generated from shaders/wgsl/value-16.wgsl by `npm run shaders` in web/: don't edit.
 // needs: words, perceptron
 
-static float2 irradia_table_sums[4] = (float2[4])0;
+static float2 irradia_table_sums[4];
 
 void irradia_table_clear()
 {

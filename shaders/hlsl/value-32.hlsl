@@ -1,7 +1,7 @@
 // Generated from shaders/wgsl/value-32.wgsl by `npm run shaders` in web/: don't edit.
 // needs: words, perceptron
 
-static float4 irradia_table_sums = (float4)0;
+static float4 irradia_table_sums;
 
 void irradia_table_clear()
 {

@@ -1,9 +1,9 @@
 // Generated from shaders/wgsl/value-4.wgsl by `npm run shaders` in web/: don't edit.
 // needs: words, perceptron, scales
 
-static float4 irradia_table_lower[4] = (float4[4])0;
+static float4 irradia_table_lower[4];
 
-static float4 irradia_table_upper[4] = (float4[4])0;
+static float4 irradia_table_upper[4];
 
 void irradia_table_clear()
 {

@@ -1,7 +1,7 @@
 // Generated from shaders/wgsl/value-8.wgsl by `npm run shaders` in web/: don't edit.
 // needs: words, perceptron, scales
 
-static float4 irradia_table_sums[4] = (float4[4])0;
+static float4 irradia_table_sums[4];
 
 void irradia_table_clear()
 {

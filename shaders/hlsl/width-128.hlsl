@@ -6,6 +6,6 @@ static const uint irradia_row_stride = 128u;
 
 static const uint irradia_matrix = 4096u;
 
-static float4 irradia_units[32] = (float4[32])0;
+static float4 irradia_units[32];
 
-static float4 irradia_sums[32] = (float4[32])0;
+static float4 irradia_sums[32];

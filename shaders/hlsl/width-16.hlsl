@@ -6,6 +6,6 @@ static const uint irradia_row_stride = 16u;
 
 static const uint irradia_matrix = 64u;
 
-static float4 irradia_units[4] = (float4[4])0;
+static float4 irradia_units[4];
 
-static float4 irradia_sums[4] = (float4[4])0;
+static float4 irradia_sums[4];

@@ -6,6 +6,6 @@ static const uint irradia_row_stride = 32u;
 
 static const uint irradia_matrix = 256u;
 
-static float4 irradia_units[8] = (float4[8])0;
+static float4 irradia_units[8];
 
-static float4 irradia_sums[8] = (float4[8])0;
+static float4 irradia_sums[8];

@@ -6,6 +6,6 @@ static const uint irradia_row_stride = 64u;
 
 static const uint irradia_matrix = 1024u;
 
-static float4 irradia_units[16] = (float4[16])0;
+static float4 irradia_units[16];
 
-static float4 irradia_sums[16] = (float4[16])0;
+static float4 irradia_sums[16];

@@ -9,9 +9,17 @@ import { withoutCopies } from "./copies.js";
 /** One declaration of naga's: loops back to `for`, without guards, clamps and copies, local names as they were. */
 export function tidy(declaration: string): string {
   const text = withoutCopies(withShortNames(restoreLoops(withoutGuards(declaration))));
-  return text
+  return withoutInitialiser(text)
     .replace(/\n {4}return;(?=\n\}\n)/, "")
     .replace(/^(?:\{|.*\) \{)\n\n/m, (head) => head.slice(0, -1));
+}
+
+/** Our private variables are written before they are read, and not every compiler takes naga's lists of zeros. */
+function withoutInitialiser(declaration: string): string {
+  return declaration.replace(
+    /^((?:static )?(?!static|const\b)\w+ irradia_\w+(?:\[\d+\])?) = [^{}]*;\n$/,
+    "$1;\n",
+  );
 }
 
 /** naga numbers what has one name in several functions of a module; within one function there are few such. */
