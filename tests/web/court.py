@@ -1,4 +1,4 @@
-"""A small scene for the plugin of three.js: cubes that share a mesh, a pane of glass, two lamps."""
+"""A small scene for the plugin of three.js: cubes that share a mesh, a pane of glass, four lights."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from irradia.core.rng import Seed
 from irradia.export.glb import Companions, write_baked_glb
+from irradia.export.shadow_mask_extension import BakedShadows
 from irradia.field.native_fields import decode_field, encode_field
 from irradia.scene.builtin.builder import SceneBuilder
 from irradia.scene.builtin.matte import matte
@@ -18,9 +20,11 @@ from irradia.scene.gltf import document_to_scene
 from irradia.scene.gltf.document import GltfDocument
 from irradia.scene.types import Camera, Light, LightMode, Material, Scene
 
-from .made_light import FIELDS, bounds, made_field, made_grid, made_layout, made_pages
+from .made_light import FIELDS, N_PAGES, PAGE_PX, bounds, made_field, made_grid, made_layout, made_pages
 
 CUBES_M = ((-0.8, 0.25, 0.0), (0.0, 0.25, -0.6), (0.8, 0.25, 0.0))
+TORCHES_M = {"point": (-1.0, 1.0, 0.5), "spot": (1.0, 1.5, 0.5), "directional": (0.3, 1.0, 0.6)}
+MASK_CHANNELS, MASK_SHARES = (3, 0, 1), (0.2, 0.8)  # channels by torch, shares by page
 PANE_M = np.array([(0.4, 0.0, 0.5), (1.0, 0.0, 0.5), (1.0, 0.5, 0.5), (0.4, 0.5, 0.5)])
 
 
@@ -32,18 +36,27 @@ def write_court(
     Args:
         path: The .glb.
         instanced: The cubes come by EXT_mesh_gpu_instancing, not as nodes; nothing else differs.
-        torch: Mode of the second of its two lamps; the first is baked.
+        torch: Mode of its lights but for the first, which is baked.
         direct: With a map of direct light.
     """
     scene = court(instanced, torch)
     field = decode_field(made_field(FIELDS["identity"], bounds(scene))).field
     indirect = replace(field, frame=replace(field.frame, quantity="indirect"))
+    masked = BakedShadows(made_mask(), (None, *MASK_CHANNELS)) if torch == "mixed" else None
     companions = Companions(
+        shadows=masked,
         direct=made_pages(Seed(6), 0.2, 0.6) if direct else None,
         probes=made_grid(*bounds(scene)),
         field=encode_field(indirect),
     )
     write_baked_glb(path, scene, made_layout(scene), made_pages(Seed(4), 0.5, 1.5), companions)
+
+
+def made_mask() -> NDArray[np.float32]:
+    """(P, H, W, 4) shares of light: of every torch the page's own, of nobody else any."""
+    pages = np.zeros((N_PAGES, PAGE_PX, PAGE_PX, 4), np.float32)
+    pages[..., MASK_CHANNELS] = np.reshape(MASK_SHARES, (N_PAGES, 1, 1, 1))
+    return pages
 
 
 def court(instanced: bool, torch: LightMode) -> Scene:
@@ -62,7 +75,10 @@ def court(instanced: bool, torch: LightMode) -> Scene:
         for i, place in enumerate(CUBES_M):
             builder.node(f"cube {i}", mesh=cube, translation=place)
     builder.light(Light("point", (4.0, 3.0, 2.0), position=(0.0, 1.5, 0.5), name="lamp"))
-    builder.light(Light("point", (1.0, 2.0, 3.0), position=(-1.0, 1.0, 0.5), name="torch", mode=torch))
+    for kind, place in TORCHES_M.items():
+        towards = tuple(-x for x in place)
+        light = Light(kind, (1.0, 2.0, 3.0), position=place, direction=towards, name=kind, mode=torch)
+        builder.light(replace(light, inner_cone_rad=0.3, outer_cone_rad=0.5) if kind == "spot" else light)
     builder.camera(Camera(look_at((0.0, 1.6, 2.4), (0.0, 0.2, 0.0)), yfov_rad=0.9, name="camera"))
     builder.environment_color((0.0, 0.0, 0.0))
     document = builder.build()

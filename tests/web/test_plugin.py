@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from .court import PANE_M, court, write_court
+from .court import MASK_SHARES, PANE_M, court, write_court
 from .pixels import BACKENDS, view_of
 
 WIDTH_PX, HEIGHT_PX = 96, 64
@@ -21,6 +21,7 @@ FILES: dict[str, dict[str, Any]] = {
     "plain": {},
     "instanced": {"instanced": True},
     "live": {"torch": "realtime"},
+    "masked": {"torch": "mixed"},
     "direct": {"direct": True},
 }
 BALL = {"centre": [0.0, 0.9, 0.4], "radius": 0.3, "isLit": True}  # against the void
@@ -52,6 +53,11 @@ JOBS: dict[str, tuple[str, str, dict[str, dict[str, Any]]]] = {
         "live",
         "irradia",
         {"lightmap": {}, "none": {"use": "none"}, "field": {"use": "field"}, "probes": {"use": "probes"}},
+    ),
+    "masked": (
+        "masked",
+        "irradia",
+        {"none": {"use": "none"}, "lightmap": {"use": "lightmap"}, "again": {"use": "none"}},
     ),
     "direct": ("direct", "irradia", {"irradiance": {"view": "irradiance", "use": "field"}}),
     "without map": ("plain", "irradia", {"irradiance": {"view": "irradiance", "use": "field"}}),
@@ -203,7 +209,20 @@ def test_lights_that_stay_live_shine_on_top_of_the_lightmap(shots) -> None:
     shine = live["lightmap"].pixels - shots["plain"]["lightmap"].pixels
     np.testing.assert_allclose(shine[where], live["none"].pixels[where], atol=CLOSE)
     assert shine[where].max() > 0.1
-    assert [live[name].told["shining"] for name in ("lightmap", "none")] == [[True, False]] * 2
+    assert [live[name].told["shining"] for name in ("lightmap", "none")] == [[True] * 3 + [False]] * 2
+
+
+def test_live_lights_have_their_baked_shadows(shots) -> None:
+    where, masked = opaque(), shots["masked"]
+    unmasked = shots["live"]["none"].pixels
+    share = masked["none"].pixels[where] / np.maximum(unmasked[where], 1e-6)
+    lit = unmasked[where] > 1e-3
+    by_page = np.abs(share[lit][:, None] - MASK_SHARES)
+    assert by_page.min(axis=1).max() < 0.5 / 255 + 1e-4
+    assert (by_page < 0.01).sum(axis=0).min() > 30  # both pages are seen
+    expected = masked["none"].pixels + shots["plain"]["lightmap"].pixels
+    np.testing.assert_allclose(masked["lightmap"].pixels[where], expected[where], atol=CLOSE)
+    np.testing.assert_array_equal(masked["again"].pixels, masked["none"].pixels)
 
 
 def test_each_light_shines_only_where_its_first_bounce_is_missing(shots) -> None:
@@ -213,8 +232,8 @@ def test_each_light_shines_only_where_its_first_bounce_is_missing(shots) -> None
         for name, shot in steps.items()
     }
     assert told["plain", "lightmap"] == ("source", 0)
-    assert told["plain", "field"] == ("lights", 2)
-    assert told["live", "field"] == ("lights", 2)
+    assert told["plain", "field"] == ("lights", 4)
+    assert told["live", "field"] == ("lights", 4)
     assert told["live", "probes"] == ("source", 0)  # of all light
     assert told["direct", "irradiance"] == ("map", 0)
 

@@ -140,7 +140,8 @@ export interface SceneLight {
   readonly surfaces: readonly LitSurface[];
   /**
    * The file's punctual lights. Those whose light is baked shine only where the source leaves their first bounce
-   * out and no map has it. `visible` is switched with the source; shadows are the page's affair.
+   * out and no map has it. `visible` is switched with the source. Surfaces with a lightmap show the baked shadows of
+   * lights in mode `mixed`; other shadows are the page's affair.
    */
   readonly lights: readonly Light[];
   /** Call after changing a material of the scene, so that its copies for other sources and views follow. */

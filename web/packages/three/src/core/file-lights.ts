@@ -1,5 +1,5 @@
 /** Punctual lights of a file: those that the bake left to the engine, and those whose light is baked. */
-import { EXTENSION } from "@irradia/runtime";
+import { EXTENSION, type NodeLight } from "@irradia/runtime";
 import type { Light, Object3D } from "three";
 import type { GLTFParser } from "three/addons/loaders/GLTFLoader.js";
 
@@ -30,16 +30,34 @@ export function restoreBakedLights(nodes: readonly NodeDefinition[], nLights: nu
 export class FileLights {
   readonly #live: Light[] = [];
   readonly #baked: Light[] = [];
+  readonly #channels = new Map<Light, number>();
 
-  constructor(scene: Object3D, parser: GLTFParser, restored: ReadonlySet<number>) {
-    const visit = (object: Object3D, isBaked: boolean): void => {
-      const node = parser.associations.get(object)?.nodes;
-      const isMine = node === undefined ? isBaked : restored.has(node);
-      if ((object as Light).isLight) (isMine ? this.#baked : this.#live).push(object as Light);
-      for (const child of object.children) visit(child, isMine);
+  /**
+   * @param restored nodes whose light is baked
+   * @param nodes what the extension says of nodes
+   */
+  constructor(
+    scene: Object3D,
+    parser: GLTFParser,
+    restored: ReadonlySet<number>,
+    nodes: ReadonlyMap<number, NodeLight>,
+  ) {
+    const visit = (object: Object3D, above: number): void => {
+      const node = parser.associations.get(object)?.nodes ?? above;
+      if ((object as Light).isLight) {
+        (restored.has(node) ? this.#baked : this.#live).push(object as Light);
+        const channel = nodes.get(node)?.shadowMaskChannel;
+        if (channel !== undefined) this.#channels.set(object as Light, channel);
+      }
+      for (const child of object.children) visit(child, node);
     };
-    visit(scene, false);
+    visit(scene, -1);
     for (const light of this.#baked) light.visible = false;
+  }
+
+  /** Channel of the shadow mask, by light that has one. */
+  get maskChannels(): ReadonlyMap<Light, number> {
+    return this.#channels;
   }
 
   get all(): readonly Light[] {

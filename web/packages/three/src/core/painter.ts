@@ -2,6 +2,7 @@
 import type { LightShader, Probes, TextureLimits } from "@irradia/runtime";
 import type { Material, Object3D, Texture } from "three";
 import type { View } from "../types.js";
+import type { ShadowMask } from "./shadow-mask.js";
 
 /** How a material is to show its light. */
 export interface Shading {
@@ -10,6 +11,8 @@ export interface Shading {
   /** Direct light that a screen light leaves to the material. */
   readonly direct: LightShader | undefined;
   readonly view: View | null;
+  /** Baked shadows of live lights. */
+  readonly mask: ShadowMask | undefined;
   /** Width and height of the page, where geometries drawn with it carry LIGHTMAP_ATTRIBUTES. */
   readonly lightmap: readonly [number, number] | undefined;
 }
@@ -40,6 +43,8 @@ export interface Painter {
   paint(copy: Material, original: Material, shading: Shading, key: string): void;
   /** The texture behind a screen light was exchanged. */
   screenChanged(screen: ScreenLight): void;
+  /** Once, before anything is drawn: lights that have baked shadows. */
+  shadow(mask: ShadowMask): void;
   /** three.js' own grid of light probes, filled from a grid of ours. */
   probeGrid(probes: Probes): Object3D;
 }

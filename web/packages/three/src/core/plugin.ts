@@ -6,6 +6,7 @@ import { FileLights, restoreBakedLights } from "./file-lights.js";
 import type { Painter } from "./painter.js";
 import { readBaked } from "./read.js";
 import { BakedSceneLight } from "./scene-light.js";
+import { readShadowMask } from "./shadow-mask.js";
 import { surfacesOf } from "./surfaces.js";
 
 /** A plugin that paints so. */
@@ -43,8 +44,9 @@ class LightingPlugin implements GLTFLoaderPlugin {
     const baked = await this.#reading;
     const { scene } = gltf;
     const surfaces = surfacesOf(scene, this.#parser, baked);
-    const lights = new FileLights(scene, this.#parser, this.#restored);
-    const loaded = { scene, baked, surfaces, lights };
+    const lights = new FileLights(scene, this.#parser, this.#restored, baked?.nodes ?? new Map());
+    const mask = await readShadowMask(baked, lights.maskChannels);
+    const loaded = { scene, baked, surfaces, lights, mask };
     gltf.userData.irradia = new BakedSceneLight(loaded, this.#newPainter(), this.#options.source);
   }
 }

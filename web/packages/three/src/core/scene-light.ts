@@ -4,6 +4,7 @@ import type { Group, Light, Material, Mesh, Object3D, Texture } from "three";
 import type { DirectFrom, LightSource, LitSurface, SceneLight, SourceKind, View } from "../types.js";
 import type { FileLights } from "./file-lights.js";
 import { GridLight, type Painter, ScreenLight, type Shading } from "./painter.js";
+import type { ShadowMask } from "./shadow-mask.js";
 import { directOf, noSource, Source, sourceNamed, sourcesOf } from "./sources.js";
 import { isMesh, looseSurface } from "./surfaces.js";
 import { disposeTextures } from "./textures.js";
@@ -17,6 +18,7 @@ export interface LoadedScene {
   readonly baked: BakedLight | undefined;
   readonly surfaces: LitSurface[];
   readonly lights: FileLights;
+  readonly mask: ShadowMask | undefined;
 }
 
 export class BakedSceneLight implements SceneLight {
@@ -25,6 +27,7 @@ export class BakedSceneLight implements SceneLight {
   readonly #painter: Painter;
   readonly #wardrobe: Wardrobe;
   readonly #lights: FileLights;
+  readonly #mask: ShadowMask | undefined;
   readonly #surfaces: Map<Mesh, LitSurface>;
   readonly #ofFile: readonly Source[];
   #sources: Source[];
@@ -35,12 +38,14 @@ export class BakedSceneLight implements SceneLight {
   #grid: GridLight | undefined;
   #direct: LightShader | undefined;
 
-  constructor({ scene, baked, surfaces, lights }: LoadedScene, painter: Painter, first?: string) {
+  constructor({ scene, baked, surfaces, lights, mask }: LoadedScene, painter: Painter, first?: string) {
     this.baked = baked;
     this.scene = scene;
     this.#painter = painter;
     this.#wardrobe = new Wardrobe(painter);
     this.#lights = lights;
+    this.#mask = mask;
+    if (mask) painter.shadow(mask);
     this.#surfaces = new Map(surfaces.map((surface) => [surface.mesh, surface]));
     this.#ofFile = baked ? sourcesOf(baked, lights.nLive > 0, painter.limits) : [];
     this.#sources = [...this.#ofFile, noSource()];
@@ -170,7 +175,8 @@ export class BakedSceneLight implements SceneLight {
     const textures = new Set(shaders.flatMap((shader) => shader.textures));
     const uniforms = new Set(shaders.flatMap((shader) => shader.uniforms));
     const ofTextures = [...textures].reduce((sum, { plan }) => sum + plan.nBytes, 0);
-    return [...uniforms].reduce((sum, { values }) => sum + values.byteLength, ofTextures);
+    const ofMask = this.#mask?.texture.image.data?.byteLength ?? 0;
+    return [...uniforms].reduce((sum, { values }) => sum + values.byteLength, ofTextures + ofMask);
   }
 
   refresh(): void {
@@ -187,6 +193,8 @@ export class BakedSceneLight implements SceneLight {
     this.#wardrobe.clear();
     this.#grid?.grid.removeFromParent();
     for (const source of this.#sources) for (const shader of source.made) disposeTextures(shader);
+    if (this.#direct) disposeTextures(this.#direct);
+    this.#mask?.texture.dispose();
   }
 
   #none(): Source {
@@ -220,6 +228,7 @@ export class BakedSceneLight implements SceneLight {
       light: this.#screen ?? this.#lightOf(hasLightmap, isDynamic),
       direct: this.#screen && hasLightmap && this.#source.hasDirectMap ? this.#directMap() : undefined,
       view: this.#view,
+      mask: hasLightmap ? this.#mask : undefined,
       lightmap: hasLightmap ? [width, height] : undefined,
     };
   }

@@ -46,7 +46,7 @@ export class Wardrobe {
 
   #shown(material: Material, shading: Shading): Material {
     const original = this.originalOf(material);
-    if (!takesLight(original) || (!shading.light && !shading.view)) return original;
+    if (!takesLight(original) || (!shading.light && !shading.view && !shading.mask)) return original;
     const copies = this.#copies.get(original) ?? new Map<string, Material>();
     this.#copies.set(original, copies);
     const key = this.#keyOf(shading);

@@ -2,16 +2,19 @@
 import type { LightShader, LightView, Probes, TextureLimits } from "@irradia/runtime";
 import type { IUniform, Material, Object3D, WebGLProgramParametersWithUniforms } from "three";
 import { GridLight, type Painter, ScreenLight, type Shading } from "../core/painter.js";
+import type { ShadowMask } from "../core/shadow-mask.js";
 import type { Inputs } from "../types.js";
 import { bindGlsl, callOf } from "./bind.js";
 import { FRAGMENT, VERTEX } from "./chunks.js";
 import { probeGrid } from "./probe-grid.js";
+import { MASK_DECLARATIONS, MaskChannels, maskedLights } from "./shadow.js";
 
 type Pieces = Readonly<Record<string, string>>;
 type Expressions = Partial<Inputs<string>>;
 
 export class WebGLPainter implements Painter {
   readonly #intensity: IUniform<number> = { value: 1 };
+  #channels: MaskChannels | undefined;
   readonly #screens = new WeakMap<ScreenLight, IUniform>();
 
   constructor(readonly limits: TextureLimits) {}
@@ -31,8 +34,9 @@ export class WebGLPainter implements Painter {
       original.onBeforeCompile(program, renderer);
       Object.assign(program.uniforms, uniforms);
       program.vertexShader = inserted(program.vertexShader, vertex);
-      program.fragmentShader = inserted(program.fragmentShader, fragment);
+      program.fragmentShader = masked(inserted(program.fragmentShader, fragment), shading);
     };
+    if (shading.mask) this.#followLights(copy, original);
     copy.customProgramCacheKey = () => `${original.customProgramCacheKey()}|${key}`;
   }
 
@@ -40,12 +44,28 @@ export class WebGLPainter implements Painter {
     this.#uniformOf(screen).value = screen.texture;
   }
 
+  shadow(mask: ShadowMask): void {
+    this.#channels = new MaskChannels(mask);
+  }
+
   probeGrid(probes: Probes): Object3D {
     return probeGrid(probes);
   }
 
-  #uniformsOf({ light, direct }: Shading): Record<string, IUniform> {
-    const intensity = { irradiaIntensity: this.#intensity, ...(direct && bindGlsl(direct).uniforms) };
+  /** Which light is which changes with what shines. */
+  #followLights(copy: Material, original: Material): void {
+    copy.onBeforeRender = (renderer, scene, camera, ...rest) => {
+      original.onBeforeRender(renderer, scene, camera, ...rest);
+      this.#channels?.update(scene, camera, renderer.info.render.frame);
+    };
+  }
+
+  #uniformsOf({ light, direct, mask }: Shading): Record<string, IUniform> {
+    const intensity = {
+      irradiaIntensity: this.#intensity,
+      ...(direct && bindGlsl(direct).uniforms),
+      ...(mask && this.#channels?.uniforms),
+    };
     if (light instanceof ScreenLight) return { ...intensity, irradiaScreen: this.#uniformOf(light) };
     return { ...intensity, ...(isShader(light) && bindGlsl(light).uniforms) };
   }
@@ -66,6 +86,11 @@ function inserted(text: string, pieces: Pieces): string {
   }, text);
 }
 
+/** The shader with its live lights in their baked shadows. */
+function masked(text: string, { mask }: Shading): string {
+  return mask ? text.replace("#include <lights_fragment_begin>", maskedLights) : text;
+}
+
 function vertexPieces({ lightmap }: Shading): Pieces {
   const { declarations, position, place, lightmapDeclarations } = VERTEX;
   return {
@@ -75,11 +100,12 @@ function vertexPieces({ lightmap }: Shading): Pieces {
 }
 
 function fragmentPieces(shading: Shading): Pieces {
-  const { light, view, lightmap } = shading;
+  const { light, view, mask, lightmap } = shading;
   const inputs = { ...FRAGMENT.inputs, ...(lightmap && FRAGMENT.lightmapInputs) };
   const varyings = [FRAGMENT.declarations, lightmap && FRAGMENT.lightmapDeclarations];
+  const ofMask = mask && MASK_DECLARATIONS;
   return {
-    common: [...varyings, ...textsOf(shading)].filter(Boolean).join("\n"),
+    common: [...varyings, ...textsOf(shading), ofMask].filter(Boolean).join("\n"),
     lights_fragment_begin: `${FRAGMENT.frame}\nvec3 irradiaLight = ${irradiance(shading, inputs)};`,
     ...(light && { lights_fragment_end: FRAGMENT.noSky }),
     ...(light && !(light instanceof GridLight) && { aomap_fragment: FRAGMENT.add }),

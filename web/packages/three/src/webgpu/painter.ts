@@ -4,10 +4,12 @@ import type { Material, Object3D } from "three";
 import { context, Fn, renderGroup, screenUV, texture, uniform, vec3, vec4 } from "three/tsl";
 import type { Node, NodeBuilder, TextureNode } from "three/webgpu";
 import { GridLight, type Painter, ScreenLight, type Shading } from "../core/painter.js";
+import type { ShadowMask } from "../core/shadow-mask.js";
 import type { Inputs } from "../types.js";
 import { lightNode } from "./bind.js";
 import { inputsOf } from "./inputs.js";
 import { ownIrradiance, probeGrid } from "./probe-grid.js";
+import { shadowLight } from "./shadow.js";
 import { commonView, MISSING_VIEW } from "./views.js";
 
 type Vec3Node = Node<"vec3">;
@@ -50,6 +52,10 @@ export class WebGPUPainter implements Painter {
 
   screenChanged(screen: ScreenLight): void {
     this.#screenNode(screen).value = screen.texture;
+  }
+
+  shadow(mask: ShadowMask): void {
+    for (const [light, channel] of mask.channels) shadowLight(light, mask.texture, channel);
   }
 
   probeGrid(probes: Probes): Object3D {
