@@ -6,6 +6,7 @@ import pytest
 
 from irradia.core.errors import InputError
 from irradia.field.training import (
+    DataOptions,
     Finished,
     Remark,
     Stepped,
@@ -47,6 +48,24 @@ def test_rows_that_come_later_are_trained_on(writer, samples, spec, tmp_path):
     assert "Training from 600 samples, all there are." in remarks
     assert isinstance(told[-1], Finished)
     assert told[-1].n_samples > 550
+
+
+def test_more_rows_than_memory_holds_with_smoothing_end_no_training(writer, samples, spec, tmp_path):
+    writer.append(samples.rows[:200])
+    row_bytes = 4 * samples.info.n_columns
+    options = TrainOptions(
+        steps=40, batch_size=64, validate_every=40, data=DataOptions(smooth_k=4, memory_bytes=350 * row_bytes)
+    )
+    told = []
+    for event in train(open_samples(tmp_path / "box.samples"), spec, options, TrainContext(backend="numpy")):
+        told.append(event)
+        if isinstance(event, Stepped) and event.step == 10:
+            writer.append(samples.rows[200:])
+    remarks = [event.text for event in told if isinstance(event, Remark) and "Training from" in event.text]
+    assert len(remarks) == 1
+    assert "Training from 350 samples, as many as --memory holds" in remarks[0]
+    assert isinstance(told[-1], Finished)
+    assert 300 < told[-1].n_samples <= 350
 
 
 def test_a_few_more_rows_are_not_worth_reading_again(writer, samples, spec, tmp_path):

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Generator
+from dataclasses import replace
 
 from irradia.core.errors import InputError
 from irradia.field.training.batches import BatchSource
@@ -65,7 +66,7 @@ class Growth:
         self.samples, self.source = samples, source
         self._plan = plan
         self._looked = time.monotonic()
-        self._has_gone = False
+        self._ended = False
 
     def follow(self) -> Generator[Remark, None, None]:
         """Takes in what has come, where that is worth it.
@@ -74,22 +75,27 @@ class Growth:
             A remark about it.
         """
         now = time.monotonic()
-        if self.samples.finished or self._has_gone or now - self._looked < LOOK_EVERY_S:
+        if self.samples.finished or self._ended or now - self._looked < LOOK_EVERY_S:
             return
         self._looked = now
         try:
             grown = self.samples.grown()
         except (InputError, OSError) as error:  # what has been read stays readable
-            self._has_gone = True
+            self._ended = True
             why = str(error).splitlines()[0]
             yield Remark(f"No more samples can be read; training goes on with {len(self.samples):,}: {why}.")
             return
         if not grown.finished and len(grown) < FACTOR * len(self.samples):
             return
-        self.samples = grown
-        if len(grown) > self.source.n_rows:
-            self.source = _drained(prepare(grown, self._plan))
+        most = self._plan.most_rows(grown.info.n_columns)
         state = "all there are" if grown.finished else "so far"
+        if most is not None and len(grown) > most:
+            self._ended = True
+            grown = replace(grown, rows=grown.rows[: max(most, len(self.samples))])
+            state = "as many as --memory holds with what smoothing and jitter need of it"
+        if len(grown) > len(self.samples):
+            self.source = _drained(prepare(grown, self._plan))
+        self.samples = grown
         yield Remark(f"Training from {len(grown):,} samples, {state}.")
 
 

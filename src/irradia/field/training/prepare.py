@@ -45,6 +45,13 @@ class DataPlan:
     seed: Seed
     visible: Visibility | None = None
 
+    def most_rows(self, n_columns: int) -> int | None:
+        """Samples that memory takes where all must be in it; None where any number is read in windows."""
+        options = self.options
+        if not (options.smooth_k or options.jitter_copies):
+            return None
+        return options.memory_bytes // (4 * n_columns * (1 + options.jitter_copies))
+
 
 def prepare(samples: SampleFile, plan: DataPlan) -> Preparing:
     """Makes a source of batches.
