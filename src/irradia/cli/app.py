@@ -30,7 +30,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "render": ("render", "Path-trace an image of a scene or of a baked result."),
     "sweep": ("sweep", "Train a grid of fields and compare them."),
     "eval": ("eval", "A field against the path-traced reference."),
-    "export": ("export", "Write a field in another format, smaller, or into a baked scene."),
+    "export": (
+        "export",
+        "Write a field in another format, smaller, or into a baked scene; or a scene for the web.",
+    ),
     "view": ("view", "Show baked light in the browser."),
     "gallery": ("gallery", "Show every field of a folder from the same camera, side by side."),
     "compare": ("compare", "Metrics between two images or lightmaps."),
