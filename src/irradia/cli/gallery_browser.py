@@ -119,9 +119,13 @@ class Page:
                 raise
             return None
 
-    def picture(self) -> bytes:
-        """What is on show, as a PNG."""
-        return base64.b64decode(self._call("Page.captureScreenshot", format="png")["data"])
+    def picture(self, timeout_s: float = _ANSWER_S) -> bytes:
+        """What is on show, as a PNG; waits for a moment in which nothing is drawn.
+
+        Raises:
+            BrowserError: There is none in time.
+        """
+        return base64.b64decode(self._call("Page.captureScreenshot", timeout_s, format="png")["data"])
 
     def close_browser(self) -> None:
         """Asks the browser to end."""

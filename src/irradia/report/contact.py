@@ -115,12 +115,13 @@ def _wrapped(text: str, font: FreeTypeFont | ImageFont, width_px: float) -> list
 
 
 def _cut(text: str, font: FreeTypeFont | ImageFont, width_px: float) -> str:
-    """As much of a line as there is room for."""
+    """As much of a line as there is room for, in signs that Pillow's font has."""
+    text = text.replace("\N{MINUS SIGN}", "-")
     if font.getlength(text) <= width_px:
         return text
-    while text and font.getlength(f"{text}…") > width_px:
+    while text and font.getlength(f"{text}...") > width_px:
         text = text[:-1]
-    return f"{text}…"
+    return f"{text}..."
 
 
 def _font(size: int) -> FreeTypeFont | ImageFont:

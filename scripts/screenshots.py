@@ -1,0 +1,92 @@
+"""Takes the README's pictures of the viewer, from what `make demo` has left: docs/images/viewer-*.png.
+
+    python scripts/screenshots.py out/demo [--gpu] [--only split]
+
+In software each takes a minute or so. Pictures are kept small: they come with every clone.
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from threading import Thread
+
+from PIL import Image
+
+from irradia.cli.gallery_browser import Page, open_page
+from irradia.cli.gallery_viewer import show
+from irradia.cli.view_job import listen
+from irradia.core.errors import IrradiaError
+from irradia.core.files import write_atomic
+
+ROOT = Path(__file__).resolve().parents[1]
+IMAGES = ROOT / "docs" / "images"
+SIZE_PX = (1280, 720)
+MAX_BYTES = 300_000
+TIMEOUT_S = 900.0
+
+# Name: what the viewer is asked to show.
+SHOTS = {
+    "split": "left=lightmap&right=reference:0&compare=split&pose=0",
+    "error": "left=field&right=reference:0&compare=error&pose=0",
+    "texels": "left=lightmap&view=uv&pose=0",
+}
+
+
+def main() -> int:
+    """Takes each picture in a browser of its own."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("demo", type=Path, nargs="?", default=ROOT / "out" / "demo")
+    parser.add_argument("--gpu", action="store_true", help="draw with this machine's GPU")
+    parser.add_argument("--only", choices=SHOTS, action="append", help="this picture; may be given again")
+    asked = parser.parse_args()
+    try:
+        with served(asked.demo) as url:
+            for name in asked.only or SHOTS:
+                with open_page(*SIZE_PX, gpu=asked.gpu) as page:
+                    show(page, f"{url}?renderer=webgl2&{SHOTS[name]}", TIMEOUT_S)
+                    print(f"{name}: {save(name, page):,} bytes", flush=True)
+    except IrradiaError as error:
+        print(f"screenshots: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+@contextmanager
+def served(folder: Path) -> Iterator[str]:
+    """The viewer of a folder; gives its address."""
+    server = listen([folder], [], 0)
+    Thread(target=server.serve_forever, daemon=True).start()
+    try:
+        yield server.url
+    finally:
+        server.shutdown()
+        server.server_close()
+
+
+def save(name: str, page: Page) -> int:
+    """Writes the page's picture, panels included; returns its bytes."""
+    data = packed(Image.open(io.BytesIO(page.picture(TIMEOUT_S))).convert("RGB"))
+    with write_atomic(IMAGES / f"viewer-{name}.png") as stream:
+        stream.write(data)
+    return len(data)
+
+
+def packed(picture: Image.Image) -> bytes:
+    """A PNG of 256 colours, made smaller until it is small enough."""
+    width, height = picture.size
+    for share in (1.0, 0.875, 0.75, 0.625, 0.5):
+        scaled = picture.resize((round(share * width), round(share * height)), Image.Resampling.LANCZOS)
+        stream = io.BytesIO()
+        scaled.quantize(256, dither=Image.Dither.NONE).save(stream, "PNG", optimize=True)
+        if stream.tell() <= MAX_BYTES:
+            break
+    return stream.getvalue()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
