@@ -3,20 +3,24 @@
  *
  *     node print-shader.js FIELD LANGUAGE OUT [MAX_UNIFORM_BYTES]
  *
- * `OUT/shader.LANGUAGE` is the text, `OUT/NAME.bin` what to bind as NAME (little-endian), `OUT/shader.json` the rest;
+ * LANGUAGE is wgsl, glsl, hlsl or msl. `OUT/shader.LANGUAGE` is the text, `OUT/NAME.bin` what to bind as NAME (little-endian), `OUT/shader.json` the rest;
  * that is printed too.
  */
-import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
-import { join } from "node:path";
+import { mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { join, parse } from "node:path";
+import { fileURLToPath } from "node:url";
 import {
   type Field,
   fieldShader,
+  PIECES,
+  type PieceLanguage,
   readField,
   readFieldBin,
-  type ShaderLanguage,
   WEBGPU_LIMITS,
 } from "@irradia/runtime";
 import { ZSTDDecoder } from "zstddec";
+
+const SHADERS = fileURLToPath(new URL("../../../shaders", import.meta.url));
 
 async function readFile(path: string): Promise<Field> {
   const bytes = new Uint8Array(readFileSync(path));
@@ -26,19 +30,34 @@ async function readFile(path: string): Promise<Field> {
   return readField(bytes, { unzstd: (packed, size) => zstd.decode(packed, size) });
 }
 
+/** Texts of a language that the runtime doesn't bundle; gives what comes before all pieces. */
+function addPieces(language: PieceLanguage): string {
+  if (language === "wgsl" || language === "glsl") return "";
+  let helpers = "";
+  for (const file of readdirSync(join(SHADERS, language))) {
+    const text = readFileSync(join(SHADERS, language, file), "utf8");
+    const { name } = parse(file);
+    const piece = PIECES[name];
+    if (name === "helpers") helpers = text;
+    else if (piece) Object.assign(piece, { [language]: text });
+  }
+  return helpers;
+}
+
 function raw(data: ArrayBufferView): Uint8Array {
   return new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
 }
 
 async function print(
   path: string,
-  language: ShaderLanguage,
+  language: PieceLanguage,
   out: string,
   maxUniformBytes: number,
 ): Promise<void> {
   const shader = fieldShader(await readFile(path), { ...WEBGPU_LIMITS, maxUniformBytes });
   mkdirSync(out, { recursive: true });
-  writeFileSync(join(out, `shader.${language}`), shader.text(language));
+  const helpers = addPieces(language);
+  writeFileSync(join(out, `shader.${language}`), helpers + shader.text(language as "wgsl"));
   const textures = shader.textures.map(({ name, plan, access, data }) => {
     writeFileSync(join(out, `${name}.bin`), raw(data));
     return { name, access, file: `${name}.bin`, ...plan };
@@ -54,4 +73,4 @@ async function print(
 }
 
 const [path = "", language = "wgsl", out = ".", maxUniformBytes = "65536"] = process.argv.slice(2);
-await print(path, language as ShaderLanguage, out, Number(maxUniformBytes));
+await print(path, language as PieceLanguage, out, Number(maxUniformBytes));

@@ -93,7 +93,14 @@ export {
   probeCoefficients,
   readProbes,
 } from "./scene/probes.js";
-export { composeText, type PieceChoices, type PiecePick, type ShaderPart } from "./shaders/compose.js";
+export {
+  composeText,
+  type PieceChoices,
+  type PieceLanguage,
+  type PiecePick,
+  type ShaderPart,
+  type ShaderPiece,
+} from "./shaders/compose.js";
 export { directionalShader } from "./shaders/directional-shader.js";
 export { fieldShader } from "./shaders/field-shader.js";
 export type {
@@ -106,6 +113,7 @@ export type {
   ShaderUniforms,
 } from "./shaders/light-shader.js";
 export { lightmapShader } from "./shaders/lightmap-shader.js";
+export { PIECES } from "./shaders/pieces.js";
 export { type ProbeShaderOptions, probeShader } from "./shaders/probe-shader.js";
 export {
   halfSize,
