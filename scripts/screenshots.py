@@ -31,8 +31,8 @@ TIMEOUT_S = 900.0
 
 # Name: what the viewer is asked to show.
 SHOTS = {
-    "split": "left=lightmap&right=reference:0&compare=split&pose=0",
-    "error": "left=field&right=reference:0&compare=error&pose=0",
+    "split": "left=lightmap&right=reference&compare=split&pose=0",
+    "error": "pass=full&left=field&right=reference&compare=error&pose=0",
     "texels": "left=lightmap&view=uv&pose=0",
 }
 

@@ -28,6 +28,9 @@ from irradia.report.contact import Contact, contact_page, contact_sheet
 from irradia.scene.framing import DEFAULT_ASPECT
 from irradia.scene.types import Camera
 
+# Without panels, and the light once a pixel: fields are dear to evaluate where surfaces lie behind others.
+_KIOSK = {"kiosk": "1", "pass": "full"}
+
 
 @dataclass(frozen=True)
 class GalleryJob:
@@ -200,7 +203,7 @@ def _take_all(
                 if shot.field is not None and (problem := _damage(shot.field)):
                     yield Taken(shot, problem=problem)
                     continue
-                view = {"kiosk": "1", "renderer": job.renderer, "left": shot.source, **pose}
+                view = {**_KIOSK, "renderer": job.renderer, "left": shot.source, **pose}
                 exposure = {} if ev is None else {"ev": f"{ev:.4f}"}
                 with _served(viewer, shot) as url:
                     taken = _take(page, f"{url}?{urlencode(view | exposure, safe=',:')}", shot, job.timeout_s)
