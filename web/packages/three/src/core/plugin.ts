@@ -28,9 +28,9 @@ class LightingPlugin implements GLTFLoaderPlugin {
     this.#newPainter = newPainter;
     const { extensions, materials, nodes } = parser.json;
     const isBaked = extensions?.[EXTENSION] !== undefined;
-    if (isBaked) takeOffLightmaps(materials ?? []);
-    const nLights = extensions?.KHR_lights_punctual?.lights?.length ?? 0;
-    this.#restored = isBaked ? restoreBakedLights(nodes ?? [], nLights) : new Set();
+    if (isBaked) takeOffLightmaps(objectsIn(materials));
+    const nLights = objectsIn(extensions?.KHR_lights_punctual?.lights).length;
+    this.#restored = isBaked ? restoreBakedLights(objectsIn(nodes), nLights) : new Set();
   }
 
   /** Light is read while the scene loads. */
@@ -54,4 +54,10 @@ class LightingPlugin implements GLTFLoaderPlugin {
 /** The lightmaps for loaders that don't know us, which another plugin might read: their light is ours already. */
 function takeOffLightmaps(materials: readonly { extensions?: Record<string, unknown> }[]): void {
   for (const { extensions } of materials) if (extensions) delete extensions.MOZ_lightmap;
+}
+
+/** An array as long as it is one of objects; of anything else GLTFLoader will complain. */
+function objectsIn<T extends object>(list: readonly T[] | undefined): readonly T[] {
+  const isList = Array.isArray(list) && list.every((item) => typeof item === "object" && item !== null);
+  return isList ? list : [];
 }

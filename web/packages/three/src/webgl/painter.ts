@@ -122,10 +122,16 @@ function irradiance({ light, direct }: Shading, inputs: Expressions): string {
   if (light instanceof GridLight) return FRAGMENT.own;
   const terms = [
     light instanceof ScreenLight && FRAGMENT.screen,
-    isShader(light) && callOf(light, inputs),
-    direct && callOf(direct, inputs),
+    isShader(light) && lightOf(light, inputs),
+    direct && lightOf(direct, inputs),
   ];
   return `irradiaIntensity * (${terms.filter(Boolean).join(" + ") || "vec3(0.0)"})`;
+}
+
+/** Instances without a lightmap stay dark under one. */
+function lightOf(light: LightShader, inputs: Expressions): string {
+  const call = callOf(light, inputs);
+  return light.inputs.includes("page") ? `(${inputs.page} < 0.0 ? vec3(0.0) : ${call})` : call;
 }
 
 function isShader(light: Shading["light"]): light is LightShader {

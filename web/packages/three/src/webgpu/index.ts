@@ -1,5 +1,5 @@
 /** Irradia's baked light in three.js' WebGPURenderer, on both its backends; `@irradia/three` is for WebGLRenderer. */
-import { COMMON_LIMITS } from "../core/limits.js";
+import { COMMON_BLOCK_LIMITS } from "../core/limits.js";
 import { pluginOf } from "../core/plugin.js";
 import type { IrradiaOptions, IrradiaPlugin } from "../types.js";
 import { WebGPUPainter } from "./painter.js";
@@ -26,5 +26,5 @@ export { limitsOf } from "./limits.js";
  * `gltf.userData.irradia`.
  */
 export function irradia(options: IrradiaOptions = {}): IrradiaPlugin {
-  return pluginOf(options, () => new WebGPUPainter(options.limits ?? COMMON_LIMITS));
+  return pluginOf(options, () => new WebGPUPainter(options.limits ?? COMMON_BLOCK_LIMITS));
 }

@@ -1,5 +1,5 @@
 /** Light in the materials of WebGPURenderer, by their context's getGI. */
-import type { LightView, Probes, TextureLimits } from "@irradia/runtime";
+import type { LightShader, LightView, Probes, TextureLimits } from "@irradia/runtime";
 import type { Material, Object3D } from "three";
 import { context, Fn, renderGroup, screenUV, texture, uniform, vec3, vec4 } from "three/tsl";
 import type { Node, NodeBuilder, TextureNode } from "three/webgpu";
@@ -80,9 +80,9 @@ export class WebGPUPainter implements Painter {
   #unscaled({ light, direct }: Shading, inputs: Partial<Inputs<Node>>): Vec3Node {
     if (!light) return vec3(0);
     if (light instanceof GridLight) return ownIrradiance(light);
-    if (!(light instanceof ScreenLight)) return lightNode(light, inputs);
+    if (!(light instanceof ScreenLight)) return lightOf(light, inputs);
     const { rgb } = this.#screenNode(light).sample(screenUV) as Node<"vec4">;
-    return direct ? rgb.add(lightNode(direct, inputs)) : rgb;
+    return direct ? rgb.add(lightOf(direct, inputs)) : rgb;
   }
 
   #view(shading: Shading): Node {
@@ -104,4 +104,11 @@ export class WebGPUPainter implements Painter {
     this.#screens.set(screen, node as TextureNode);
     return node as TextureNode;
   }
+}
+
+/** Instances without a lightmap stay dark under one. */
+function lightOf(light: LightShader, inputs: Partial<Inputs<Node>>): Vec3Node {
+  const node = lightNode(light, inputs);
+  const page = inputs.page as Node<"float"> | undefined;
+  return page && light.inputs.includes("page") ? (page.lessThan(0).select(vec3(0), node) as Vec3Node) : node;
 }
