@@ -11,7 +11,7 @@ from .viewer_tours import SOURCES, Found, pixels, steps_apart
 SUFFIXES = ("safetensors", "safetensors.zst", "bin")
 HOSTILE = {  # by file, words that the panel says
     "cut.glb": "found",
-    "no-json.glb": "json",
+    "no-json.glb": "JSON",
     "light.glb": "/extensions/IRRADIA_lighting/lightmap",
     "cut.safetensors": "expected",
     "cut.safetensors.zst": "expected",

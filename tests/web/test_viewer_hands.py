@@ -13,6 +13,8 @@ import pytest
 from .viewer_tours import Found, pixels, steps_apart
 
 MAX_BYTES = 400_000  # packed
+LOW_ROOM = 0.6  # share of a low room at which eyes are
+DEPTH_M = 0.5592  # of the room, from the camera on
 
 
 @pytest.fixture(scope="module")
@@ -74,10 +76,10 @@ def test_w_flies_forward(hands):
     assert way @ ahead / np.linalg.norm(way) / np.linalg.norm(ahead) > 0.99
 
 
-def test_who_walks_stands_on_the_floor(hands):
+def test_who_walks_stands_on_the_floor_and_stops_at_walls(hands):
     _, y, z = hands["walked"]["eye"]
-    if 0 < z < 0.55:  # inside, under a ceiling of 0.55 m
-        assert y == pytest.approx(0.55 * 0.6, abs=0.02)
+    assert y == pytest.approx(0.55 * LOW_ROOM, abs=0.03)
+    assert 0.16 < z < DEPTH_M - 0.02
 
 
 def test_keys_do_what_the_help_says(hands):

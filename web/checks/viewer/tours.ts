@@ -151,8 +151,12 @@ async function hands(driver: Driver): Promise<Record<string, unknown>> {
   await page.keyboard.up("w");
   await driver.settled();
   const flown = (await driver.state()).camera;
+  const inside = { eye: [0.3, 0.45, 0.15], target: [0.3, 0.3, 0.5], yfovDeg: 50 };
+  await driver.set({ camera: inside, object: "off" });
   await page.keyboard.press("3");
+  await page.keyboard.down("w");
   await page.waitForTimeout(1500);
+  await page.keyboard.up("w");
   await driver.settled();
   const walked = (await driver.state()).camera;
   await page.keyboard.press("c");

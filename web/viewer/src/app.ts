@@ -99,6 +99,13 @@ export class App {
     if (pose) this.lookFrom(pose);
   }
 
+  /** Where the picture on either side was taken. */
+  lookFromShown(): void {
+    const { left, right, references } = this.status.value;
+    const shown = references.find(({ id, pose }) => pose && (id === left?.id || id === right?.id));
+    if (shown?.pose) this.lookFrom(shown.pose);
+  }
+
   /** Where a picture of the manifest was taken. */
   lookFromPicture(index: number): void {
     const pose = this.#director.poseOfPicture(index);

@@ -5,6 +5,7 @@ import { readCameraFile } from "../src/files/camera-file.js";
 import { fileName, isPanorama, kindOf } from "../src/files/kinds.js";
 import { readManifest } from "../src/files/manifest.js";
 import { problemOf } from "../src/files/problem.js";
+import { readRadianceHdr } from "../src/files/radiance.js";
 
 const bytes = (text: string): Uint8Array => new TextEncoder().encode(text);
 
@@ -96,4 +97,22 @@ test("a problem says what was found, where, and what to do", () => {
     fix: "Write it again.",
   });
   assert.equal(problemOf("oops", "a.glb").finding, "Oops.");
+});
+
+const HEADER = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 1 +X 8\n";
+const picture = (...row: number[]): Uint8Array => Uint8Array.of(...bytes(HEADER), ...row);
+const PACKED = [2, 2, 0, 8, 136, 128, 136, 64, 3, 1, 2, 3, 133, 9, 136, 129];
+
+test("runs and single bytes of a Radiance row are unpacked, and its exposure undone", () => {
+  const { width, height, linear } = readRadianceHdr(picture(...PACKED), "p.hdr");
+  assert.deepEqual([width, height], [8, 1]);
+  assert.deepEqual([...linear.subarray(0, 4)], [0.5, 0.25, 1 / 256, 1]);
+  assert.deepEqual([...linear.subarray(12, 16)], [0.5, 0.25, 9 / 256, 1]);
+});
+
+test("a Radiance picture that is cut anywhere is refused", () => {
+  const whole = picture(...PACKED);
+  for (let n = 0; n < whole.length; n += 1) {
+    assert.throws(() => readRadianceHdr(whole.subarray(0, n), "p.hdr"), InputError, `cut at ${n}`);
+  }
 });

@@ -1,5 +1,5 @@
 /** .glb and .gltf to a model, with its baked light. */
-import { InputError, type TextureLimits } from "@irradia/runtime";
+import { InputError, readGlb, type TextureLimits } from "@irradia/runtime";
 import { irradia } from "@irradia/three/webgpu";
 import { MeshoptDecoder } from "three/addons/libs/meshopt_decoder.module.js";
 import { type GLTF, GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
@@ -7,6 +7,7 @@ import { LoadingManager } from "three/webgpu";
 import { type Model, makeModel } from "../scene/model.js";
 import { fileName, type NamedFile } from "./kinds.js";
 
+const GLB_MAGIC = 0x67;
 /** Extensions that need decoders which we leave out, as each weighs more than all of our own code. */
 const UNSUPPORTED: Readonly<Record<string, string>> = {
   KHR_draco_mesh_compression: "`irradia bake` undoes Draco: drop its scene.baked.glb.",
@@ -23,6 +24,7 @@ export async function loadScene(
   others: readonly NamedFile[],
   limits: TextureLimits,
 ): Promise<Model> {
+  if (!isGltf(file)) readGlb(file.bytes, file.name); // for its errors: GLTFLoader's speak of itself
   checkExtensions(file);
   const { manager, revoke } = managerOf(others);
   const loader = new GLTFLoader(manager).setMeshoptDecoder(MeshoptDecoder);
@@ -64,6 +66,10 @@ function missing(url: string): never {
     fileName(url),
     "Drop it too, or a .glb.",
   );
+}
+
+function isGltf({ name, bytes }: NamedFile): boolean {
+  return name.toLowerCase().endsWith(".gltf") && bytes[0] !== GLB_MAGIC;
 }
 
 /** three.js says of some of these only that it lacks a decoder, of others nothing. */

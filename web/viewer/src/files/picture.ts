@@ -1,7 +1,6 @@
 /** Pictures from files: panoramas that light, and renders to compare with. */
 import { InputError } from "@irradia/runtime";
 import { EXRLoader } from "three/addons/loaders/EXRLoader.js";
-import { HDRLoader } from "three/addons/loaders/HDRLoader.js";
 import {
   DataTexture,
   DataUtils,
@@ -15,6 +14,7 @@ import {
   type Texture,
 } from "three/webgpu";
 import type { NamedFile } from "./kinds.js";
+import { readRadianceHdr } from "./radiance.js";
 import { linearFromSrgb, unshoulder } from "./shoulder.js";
 
 export interface Picture {
@@ -28,23 +28,14 @@ export interface Picture {
 }
 
 const LARGEST_HALF = 65504;
-/** three.js divides by 255 where everyone else divides by 256. */
-const RGBE_FACTOR = 255 / 256;
+const EXR_MAGIC = 0x76;
 
 /** Reads .hdr or .exr: linear light. */
 export function readRadiance(file: NamedFile): Picture {
-  const isExr = file.bytes[0] === 0x76;
-  const buffer = file.bytes.slice().buffer;
-  try {
-    return isExr ? fromExr(file.name, buffer) : fromHdr(file.name, buffer);
-  } catch (error) {
-    const message = error instanceof Error ? error.message : String(error);
-    throw new InputError(
-      `expected a Radiance or OpenEXR picture, found: ${message}`,
-      file.name,
-      "Write it again.",
-    );
-  }
+  const { name, bytes } = file;
+  if (bytes[0] === EXR_MAGIC) return readExr(file);
+  const { width, height, linear } = readRadianceHdr(bytes, name);
+  return { name, width, height, texture: floatTexture(linear, width, height), isLinear: true };
 }
 
 /**
@@ -83,24 +74,9 @@ function pixelsOf(bitmap: ImageBitmap): Uint8ClampedArray {
   return context.getImageData(0, 0, bitmap.width, bitmap.height).data;
 }
 
-function fromHdr(name: string, buffer: ArrayBuffer): Picture {
-  const loader = new HDRLoader();
-  loader.type = FloatType;
-  const { width, height, data } = loader.parse(buffer) as {
-    width: number;
-    height: number;
-    data: Float32Array;
-  };
-  const linear = data.map((value, i) => (i % 4 === 3 ? 1 : value * RGBE_FACTOR));
-  return { name, width, height, texture: floatTexture(linear, width, height), isLinear: true };
-}
-
-/** EXRLoader's rows begin at the bottom; and ours come with one channel or three, or four. */
-function fromExr(name: string, buffer: ArrayBuffer): Picture {
-  const loader = new EXRLoader();
-  loader.type = FloatType;
-  const parsed = loader.parse(buffer) as { width: number; height: number; data: Float32Array };
-  const { width, height, data } = parsed;
+/** EXRLoader's rows begin at the bottom. */
+function readExr({ name, bytes }: NamedFile): Picture {
+  const { width, height, data } = parseExr(name, bytes);
   const linear = new Float32Array(4 * width * height);
   for (let y = 0; y < height; y += 1) {
     linear.set(data.subarray(4 * width * (height - 1 - y), 4 * width * (height - y)), 4 * width * y);
@@ -109,8 +85,24 @@ function fromExr(name: string, buffer: ArrayBuffer): Picture {
   return { name, width, height, texture: floatTexture(linear, width, height), isLinear: true };
 }
 
+function parseExr(name: string, bytes: Uint8Array): { width: number; height: number; data: Float32Array } {
+  const loader = new EXRLoader();
+  loader.type = FloatType;
+  try {
+    const parsed = loader.parse(bytes.slice().buffer) as {
+      width: number;
+      height: number;
+      data: Float32Array;
+    };
+    if (parsed.data.length === 4 * parsed.width * parsed.height && parsed.data.length > 0) return parsed;
+    throw new Error("no colours");
+  } catch (error) {
+    const message = error instanceof Error ? error.message : String(error);
+    throw new InputError(`expected an OpenEXR picture in colour, found: ${message}`, name, "Write it again.");
+  }
+}
+
 function floatTexture(linear: Float32Array, width: number, height: number): Texture {
-  if (linear.length !== 4 * width * height || linear.length === 0) throw new Error("no pixels");
   const texture = new DataTexture(linear, width, height, RGBAFormat, FloatType);
   texture.colorSpace = NoColorSpace;
   texture.needsUpdate = true;

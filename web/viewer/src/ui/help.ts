@@ -46,7 +46,7 @@ const KEYS: readonly (readonly [title: string, rows: readonly (readonly [keys: s
   ];
 
 export function helpDialog(): HTMLDialogElement {
-  const dialog = el("dialog", { class: "help", "aria-label": "Keys" });
+  const dialog = el("dialog", { class: "help", "aria-label": "Keys", autofocus: true });
   dialog.append(
     el(
       "header",

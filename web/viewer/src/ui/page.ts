@@ -6,7 +6,8 @@ import { bar } from "./bar.js";
 import { el } from "./dom.js";
 import { helpDialog } from "./help.js";
 import { listenToKeys } from "./keys.js";
-import { panel } from "./panel.js";
+import { panel } from "./panel/index.js";
+import { poseHint } from "./pose-hint.js";
 import { problems } from "./problems.js";
 import { splitter } from "./splitter.js";
 import { welcome } from "./welcome.js";
@@ -28,7 +29,8 @@ export function buildPage(app: App): void {
     lookFrom: (index: number) => app.lookFromNumber(index),
     frameAll: () => app.frameAll(),
   };
-  const stage = el("main", { class: "stage" }, host, splitter(state, status));
+  const hint = options.kiosk ? undefined : poseHint(status, () => app.lookFromShown());
+  const stage = el("main", { class: "stage" }, host, splitter(state, status), hint);
   const page = options.kiosk
     ? [stage]
     : [bar(status, actions), stage, panel(state, status, actions), welcome(status, openFiles), help, toast];

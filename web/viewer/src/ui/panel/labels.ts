@@ -1,0 +1,48 @@
+/** What the panel calls the values of the state. */
+import type { Comparison, Navigation, ObjectShape, Pass, ProbeView, Tone, View } from "../../state/state.js";
+import type { Choice } from "../controls.js";
+
+export const COMPARISON_LABELS: Record<Comparison, string> = {
+  single: "One",
+  split: "Split",
+  difference: "Diff",
+  error: "FLIP",
+};
+export const VIEW_LABELS: Record<View, string> = {
+  light: "Picture",
+  irradiance: "Irradiance alone",
+  albedo: "Albedo",
+  normal: "Normal",
+  depth: "Depth",
+  raw: "Raw output of the network",
+  hidden: "Hidden activations",
+  unclamped: "Output without clamp",
+  position: "Normalised position",
+  uv: "Lightmap UV checker",
+  validity: "Validity",
+};
+export const PROBE_LABELS: Record<ProbeView, string> = {
+  off: "Hidden",
+  irradiance: "Irradiance",
+  direction: "Dominant direction",
+  dc: "Mean alone",
+  validity: "Validity",
+};
+export const OBJECT_LABELS: Record<ObjectShape, string> = {
+  off: "None",
+  sphere: "Sphere",
+  knot: "Knot",
+  card: "Card",
+};
+export const TONE_LABELS: Record<Tone, string> = {
+  neutral: "Neutral",
+  aces: "ACES",
+  agx: "AgX",
+  linear: "Linear",
+};
+export const NAVIGATION_LABELS: Record<Navigation, string> = { orbit: "Orbit", fly: "Fly", walk: "Walk" };
+export const PASS_LABELS: Record<Pass, string> = { inline: "Material", full: "Pixel", half: "Half" };
+
+export function choicesFrom<T extends string>(values: readonly T[], labels: Record<T, string>): Choice<T>[] {
+  return values.map((value) => ({ value, label: labels[value] }));
+}

@@ -1,0 +1,100 @@
+/** Which light is shown, and against what. */
+import { COMPARISONS, VIEWS, type ViewerState } from "../../state/state.js";
+import type { Status } from "../../state/status.js";
+import type { Store } from "../../state/store.js";
+import { type Choice, note, section, segments, select, slider } from "../controls.js";
+import { COMPARISON_LABELS, choicesFrom, VIEW_LABELS } from "./labels.js";
+
+type States = Store<ViewerState>;
+type Statuses = Store<Status>;
+
+export function lightSection(state: States, status: Statuses): HTMLElement {
+  return section(
+    "Light",
+    ...sideControls(state, status),
+    numbersLine(status),
+    ...viewControls(state, status),
+    directLine(status),
+  );
+}
+
+function sideControls(state: States, status: Statuses): HTMLElement[] {
+  const left = select<string>("Source", [], (id) => state.set({ left: id }));
+  const right = select<string>("Against", [], (id) => state.set({ right: id }));
+  const comparisons = choicesFrom(COMPARISONS, COMPARISON_LABELS);
+  const compare = segments("Compare", comparisons, (value) => state.set({ compare: value }));
+  const gain = gainSlider(state);
+  state.watch(
+    ({ compare: value }) => value,
+    (value) => {
+      compare.show(value);
+      right.element.hidden = value === "single";
+      gain.hidden = value !== "difference";
+    },
+  );
+  status.watch(
+    ({ choices }) => choices,
+    (choices) => {
+      const menu = choices.map(({ id, label }): Choice<string> => ({ value: id, label }));
+      left.setChoices(menu);
+      right.setChoices(menu);
+    },
+  );
+  status.subscribe((now) => {
+    left.show(now.left?.id ?? "");
+    right.show(now.right?.id ?? "");
+  });
+  return [left.element, compare.element, right.element, gain];
+}
+
+/** In powers of two. */
+function gainSlider(state: States): HTMLElement {
+  const options = { min: 0, max: 6, step: 1, format: (power: number) => `× ${2 ** power}`, rest: 3 };
+  const gain = slider("Gain", options, (power) => state.set({ gain: 2 ** power }));
+  state.watch(
+    ({ gain: value }) => Math.log2(value),
+    (power) => gain.show(power),
+  );
+  return gain.element;
+}
+
+function numbersLine(status: Statuses): HTMLElement {
+  const numbers = note("numbers");
+  status.watch(
+    ({ difference }) => difference,
+    (difference) => numbers.show(difference ? differenceText(difference) : ""),
+  );
+  return numbers.element;
+}
+
+function differenceText({ flip, psnrDb }: NonNullable<Status["difference"]>): string {
+  const psnr = Number.isFinite(psnrDb) ? `${psnrDb.toFixed(1)} dB` : "∞";
+  return `PSNR ${psnr}   FLIP ${flip.toFixed(4)}`;
+}
+
+function viewControls(state: States, status: Statuses): HTMLElement[] {
+  const view = select("Show", choicesFrom(VIEWS, VIEW_LABELS), (value) => state.set({ view: value }));
+  const missing = note();
+  const update = (): void => {
+    const { views } = status.value;
+    const isMissing = status.value.model !== undefined && !views.includes(state.value.view);
+    missing.show(isMissing ? "Magenta: this source has no such view." : "");
+    view.show(state.value.view);
+  };
+  status.watch(
+    ({ views }) => views.join(),
+    () => {
+      const has = (value: (typeof VIEWS)[number]): boolean => status.value.views.includes(value);
+      view.setChoices(VIEWS.map((value) => ({ value, label: VIEW_LABELS[value], isDisabled: !has(value) })));
+      update();
+    },
+  );
+  state.watch(({ view: value }) => value, update);
+  return [view.element, missing.element];
+}
+
+function directLine(status: Statuses): HTMLElement {
+  const direct = note();
+  status.watch(({ direct: text }) => text, direct.show);
+  return direct.element;
+}
