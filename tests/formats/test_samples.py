@@ -16,11 +16,13 @@ from irradia.core.lock import acquire_lock
 from irradia.formats.samples import (
     SampleInfo,
     SampleWriter,
+    count_samples,
     is_being_written,
     open_samples,
     part_path,
     validation_path,
 )
+from irradia.formats.samples_bin import write_samples_bin
 
 BOX = ((-1.0, 0.0, 0.0), (1.0, 2.0, 4.0))
 SURFACE = SampleInfo("surface", BOX, "indirect", samples_per_point=64, provenance={"seed": 7})
@@ -288,3 +290,16 @@ def test_a_dataset_may_take_another_name_in_the_end(tmp_path: Path) -> None:
     assert (len(open_samples(path)), len(open_samples(other))) == (2, 1)
     assert not part_path(path).exists()
     assert not is_being_written(path)
+
+
+def test_samples_are_counted_without_being_read(tmp_path: Path) -> None:
+    path = tmp_path / "room.samples"
+    assert count_samples(path) == 0
+    with SampleWriter(path, SURFACE) as writer:
+        writer.append(ROWS)
+        assert count_samples(part_path(path)) == 0  # it grows
+    assert count_samples(path) == 2
+    write_samples_bin(tmp_path / "room.bin", open_samples(path))
+    assert count_samples(tmp_path / "room.bin") == 2
+    path.write_bytes(b"damaged")
+    assert count_samples(path) == 0

@@ -41,6 +41,7 @@ __all__ = [
     "SampleInfo",
     "SampleWriter",
     "check_rows",
+    "count_samples",
     "is_being_written",
     "open_samples",
     "part_path",
@@ -127,6 +128,22 @@ def open_samples(path: Path | str, bin_options: BinOptions | None = None) -> Sam
         if candidate.is_file():
             return _open(candidate)
     raise InputError("there is no such file", where=str(path), fix="Make one with `irradia sample`.")
+
+
+def count_samples(path: Path | str) -> int:
+    """How many rows a finished dataset says that it has, none of which is read.
+
+    0 where there is none of the name, or one that is damaged.
+    """
+    try:
+        with Path(path).open("rb") as stream:
+            start = stream.read(HEADER_BYTES)
+            if Path(path).suffix.lower() == ".bin" and not start.startswith(MAGIC):
+                return int.from_bytes(start[:4], "little")  # the Unity project's begins with it
+            n_rows = read_header(start, stream, str(path))[1]
+    except (OSError, InputError):
+        return 0
+    return 0 if n_rows == GROWING else n_rows
 
 
 def validation_path(path: Path) -> Path:
