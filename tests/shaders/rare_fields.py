@@ -49,6 +49,9 @@ RARE: dict[str, RareField] = {
     "entries-of-four-texels": RareField(replace(GRID, n_features=16), bits=32),
     "planes-of-three-texels-an-entry": RareField(TriPlane(5, 40, align_corners=True)),
     "planes-with-entries-below-a-word": RareField(TriPlane(5, 1), bits=4),
+    "tables-of-no-power-of-two": RareField(
+        replace(GRID, hash_all=True, log2_table_size=12, base_resolution=6)
+    ),
     "all-levels-hashed": RareField(replace(GRID, hash_all=True), bits=8),
     "floors": RareField(replace(GRID, convention="floor", max_resolution=30)),
     "other-factors": RareField(replace(GRID, primes=(3674653429, 2654435761, 805459861))),
