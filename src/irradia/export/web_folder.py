@@ -108,7 +108,7 @@ class _Addresses:
         self._numbers: dict[Path, int] = {}
 
     def of(self, path: Path) -> WebFile:
-        number = self._numbers.setdefault(path.resolve(), len(self._numbers))
+        number = self._numbers.setdefault(path, len(self._numbers))
         return WebFile(path, f"files/{number}/{quote(path.name, safe='')}")
 
 
