@@ -29,7 +29,7 @@ from irradia.scene.types import F32, U32
 
 if TYPE_CHECKING:
     from irradia.core.progress import Stage
-    from irradia.transport.path import LightCache
+    from irradia.transport.radiosity import TexelCache
     from irradia.transport.texel_light import Draw, TexelColour, TexelLight
     from irradia.transport.texel_noise import NoiseMeter
     from irradia.transport.texel_sums import Lanes, TexelSums
@@ -267,7 +267,7 @@ class ProgressiveBake:
         lanes: Lanes,
         n_rays: int,
         n_direct: int,
-        cache: LightCache | None,
+        cache: TexelCache | None,
         stage: Stage,
         after: TexelSums | None = None,
     ) -> None:
@@ -285,11 +285,11 @@ class ProgressiveBake:
 
         return Draw(n_rays, n_direct, seed, self._seed.child("direct").uint32(), first_subsample)
 
-    def _nothing(self) -> LightCache | None:
+    def _nothing(self) -> TexelCache | None:
         """What rays read that find no light of surfaces."""
         return self.light.cache_of_nothing(self.plan.cached, one_bounce=self._one_bounce)
 
-    def _cache(self, arriving: TexelColour, scale: float = 1.0) -> LightCache:
+    def _cache(self, arriving: TexelColour, scale: float = 1.0) -> TexelCache:
         if self._reflectance is None:
             raise RuntimeError("this bake has given its memory back")
         return self.light.cache(arriving, self._reflectance, scale)

@@ -54,6 +54,7 @@ def set_up(
         footprints = light.clear_footprints(grid)
         light.give_back()
         region = find_regions(texels, footprints.visible, footprints.cut_off, footprints.moved)
+        light.keep_sides_apart(footprints, region)
     valid = footprints.valid
     chosen = valid & _chosen_texels(texels, mesh, selection)
     traced = _indices(valid if options.cached else chosen)

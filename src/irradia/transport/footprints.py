@@ -7,15 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from irradia.transport.backend import dr, mi
 from irradia.transport.hidden import drop_hidden
 from irradia.transport.move_out import move_out
 from irradia.transport.sight import cut_off, take_one_side
 from irradia.transport.subsamples import Subsamples
 from irradia.transport.texel_grid import PRECEDING, TexelGrid
 from irradia.transport.world import World
-
-_ALL_BUT_BLACK = 0.01
 
 
 @dataclass(frozen=True)
@@ -27,11 +24,9 @@ class Footprints:
         moved: (K, 2) texels that lie inside altogether, and those beside them that they stand for.
         cut_off: (N,) which of its preceding neighbours it doesn't see; see :func:`cut_off`.
         behind: (N,) the neighbour on the other side, for texels that something divides and that show a
-            part on either; itself for all others. Rays that meet the far part read the texel too, so it
-            may pass on no more light than both have: see :func:`light_of_darker_side`.
-
-    Texels that aren't ``visible`` reflect nothing: those that were moved may show a sliver on the side
-    that they were not moved to.
+            part on either; itself for all others. Rays that meet the far part read the texel too: see
+            :mod:`irradia.transport.radiosity`. So do rays that meet a sliver of a texel that was moved, on
+            the side that it was not moved to.
     """
 
     hidden_share: NDArray[np.float32]
@@ -65,18 +60,6 @@ def clear_footprints(world: World, subsamples: Subsamples, grid: TexelGrid) -> F
     moved = move_out(world, subsamples, hidden_share, grid)
     apart = cut_off(world, subsamples, hidden_share, grid)
     return Footprints(hidden_share, moved, apart, _behind(hidden_share, divided, apart, grid))
-
-
-def light_of_darker_side(light: mi.Color3f, behind: mi.UInt32) -> mi.Color3f:
-    """What texels may pass on: of those that show on both sides of a wall, the darker side's light.
-
-    Only where that side is all but black: then it is the inside of something closed. Elsewhere the two
-    sides are parts of one scene, and the darker one would cost more light than it keeps from leaking
-    (1 % of the whole in a furnished hall).
-    """
-    darker = dr.gather(mi.Color3f, light, behind)
-    closed = dr.max(darker) < _ALL_BUT_BLACK * dr.max(light)
-    return dr.select(closed, dr.minimum(light, darker), light)
 
 
 def _behind(

@@ -19,12 +19,13 @@ from numpy.typing import NDArray
 from irradia.scene.types import Camera
 from irradia.transport.backend import device, dr, mi
 from irradia.transport.channels import MAP, Channels
-from irradia.transport.footprints import Footprints, clear_footprints, light_of_darker_side
+from irradia.transport.footprints import Footprints, clear_footprints
 from irradia.transport.frames import Frame, TangentFrames
-from irradia.transport.geometry import Hit, SurfacePoint
+from irradia.transport.geometry import SurfacePoint
 from irradia.transport.lights import Lights
 from irradia.transport.normal_maps import NormalMaps
 from irradia.transport.path import LightCache, direct, draw_ray, start, trace
+from irradia.transport.radiosity import Darkness, OtherSides, RadiosityCache, TexelCache
 from irradia.transport.sampling import Sampler, hash_u32
 from irradia.transport.subsample_set import SubsampleSet
 from irradia.transport.subsamples import Subsamples
@@ -32,28 +33,12 @@ from irradia.transport.texel_appearance import TexelAppearance
 from irradia.transport.texel_grid import TexelGrid
 from irradia.transport.texel_sums import Lanes, TexelSums
 from irradia.transport.view import seen_texels
-from irradia.transport.world import TriangleRecord, World
+from irradia.transport.world import World
 
 _RAYS_PER_SUBSAMPLE = 8
 _LANES = {"cpu": 1 << 13, "cuda": 1 << 21}
 T = TypeVar("T")
 TexelColour = mi.Color3f  # one colour a texel
-
-
-class RadiosityCache:
-    """Radiance leaving each texel of the map, ρ · E/π, read by the nearest texel."""
-
-    everywhere = False
-
-    def __init__(self, radiosity: mi.Float, width_px: int) -> None:
-        self._radiosity = radiosity
-        self._width = width_px
-
-    def outgoing(self, world: World, hit: Hit, record: TriangleRecord, active: mi.Bool) -> mi.Color3f:
-        """See :class:`LightCache`."""
-        pixel = record.page_start + mi.UInt32(record.pixel.y) * self._width + mi.UInt32(record.pixel.x)
-        value = dr.gather(mi.Vector4f, self._radiosity, pixel, active)
-        return mi.Color3f(value.x, value.y, value.z)
 
 
 @dataclass(frozen=True)
@@ -72,16 +57,6 @@ class Draw:
     seed: int
     direct_seed: int
     first_subsample: int = 0
-
-
-class Darkness:
-    """No light leaves any surface: what rays meet is sources alone."""
-
-    everywhere = True
-
-    def outgoing(self, world: World, hit: Hit, record: TriangleRecord, active: mi.Bool) -> mi.Color3f:
-        """See :class:`LightCache`."""
-        return mi.Color3f(0.0)
 
 
 class TexelLight:
@@ -117,8 +92,7 @@ class TexelLight:
         self._normal_maps, self._frames = normal_maps, frames
         self.subsamples = Subsamples(world, pixel, samples)
         self._pixel = mi.UInt32(pixel)
-        self._reflects: mi.Float | None = None
-        self._behind: mi.UInt32 | None = None
+        self._other_sides: OtherSides | None = None
         self._every = dr.arange(mi.UInt32, self.n_texels)
         dr.eval(self._every)
 
@@ -135,7 +109,7 @@ class TexelLight:
         """How many lanes keep the device busy."""
         return _LANES[device.kind]
 
-    def warm_up(self, lanes: Lanes, cache: LightCache | None, *, last_epoch: bool = False) -> None:
+    def warm_up(self, lanes: Lanes, cache: TexelCache | None, *, last_epoch: bool = False) -> None:
         """Compiles the kernels by running them with no rays; those of the last epoch count from others."""
         after = None
         if last_epoch:
@@ -145,7 +119,7 @@ class TexelLight:
         self.add_rays(self.empty_sums(), lanes, Draw(0, 0, 0, 0), cache, after=after)
         self.wait()
 
-    def cache_of_nothing(self, cached: bool, *, one_bounce: bool) -> LightCache | None:
+    def cache_of_nothing(self, cached: bool, *, one_bounce: bool) -> TexelCache | None:
         """What rays read before anything is known, or where nothing is to be read."""
         if one_bounce:
             return Darkness()
@@ -165,12 +139,14 @@ class TexelLight:
         return TexelSums.empty(self.n_texels, self.channels.count)
 
     def clear_footprints(self, grid: TexelGrid) -> Footprints:
-        """See :func:`irradia.transport.footprints.clear_footprints`; what is hidden reflects nothing."""
+        """See :func:`irradia.transport.footprints.clear_footprints`."""
         found = clear_footprints(self.world, self.subsamples, grid)
-        self._reflects = None if found.visible.all() else mi.Float(found.visible.astype(np.float32))
-        itself = np.arange(self.n_texels, dtype=np.uint32)
-        self._behind = None if np.array_equal(found.behind, itself) else mi.UInt32(found.behind)
         return found
+
+    def keep_sides_apart(self, footprints: Footprints, region: NDArray[np.uint32]) -> None:
+        """See :class:`OtherSides`."""
+        sides = OtherSides(footprints, region)
+        self._other_sides = sides if sides.count else None
 
     def seen_from(self, camera: Camera) -> NDArray[np.bool_]:
         """See :func:`irradia.transport.view.seen_texels`."""
@@ -196,7 +172,7 @@ class TexelLight:
         sums: TexelSums,
         lanes: Lanes,
         draw: Draw,
-        cache: LightCache | None,
+        cache: TexelCache | None,
         *,
         after: TexelSums | None = None,
     ) -> TexelSums:
@@ -210,6 +186,7 @@ class TexelLight:
             after: Earlier samples of the same sequences. Together with those in ``sums`` they say
                 where each texel goes on.
         """
+        cache = cache and cache.read_from(lanes.read(self._every))
         texel, pixel, part = lanes.read(self._every), lanes.read(self._pixel), lanes.part()
         earlier = sums if after is None else after.plus(sums)
 
@@ -326,17 +303,18 @@ class TexelLight:
         self, irradiance_over_pi: mi.Color3f, reflectance: mi.Color3f, scale: float = 1.0
     ) -> RadiosityCache:
         """Light leaving each texel, as the next epoch will read it."""
-        width, height = self.world.page_width, self.world.page_height
-        buffer = dr.zeros(mi.Float, 4 * width * height * self._n_pages)
-        if self._behind is not None:
-            irradiance_over_pi = light_of_darker_side(irradiance_over_pi, self._behind)
-        outgoing = irradiance_over_pi * reflectance * dr.opaque(mi.Float, scale)
-        if self._reflects is not None:
-            outgoing = outgoing * self._reflects
-        value = mi.Vector4f(outgoing.x, outgoing.y, outgoing.z, 0.0)
-        dr.scatter(buffer, value, self._pixel)
-        dr.eval(buffer)
-        return RadiosityCache(buffer, width)
+        n_pixels = self.world.page_width * self.world.page_height * self._n_pages
+        sides, factor = self._other_sides, reflectance * dr.opaque(mi.Float, scale)
+        rows = dr.zeros(mi.Float, 4 * (n_pixels + (sides.count if sides else 0)))
+        around, other_row = None, mi.UInt32(0)
+        if sides is not None:
+            around = sides.around(irradiance_over_pi)
+            other_row = sides.write(rows, n_pixels, irradiance_over_pi, around, factor)
+        outgoing = irradiance_over_pi * factor
+        fourth = dr.reinterpret_array(mi.Float, other_row)
+        dr.scatter(rows, mi.Vector4f(outgoing.x, outgoing.y, outgoing.z, fourth), self._pixel)
+        dr.eval(rows)
+        return RadiosityCache(rows, self.world.page_width, around, sides.region if sides else None)
 
     def mean(self, irradiance_over_pi: mi.Color3f) -> float:
         """Mean over texels and channels: the one number that goes back to the host."""
