@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from irradia.bake.directional_modes import MODES
+from irradia.bake.probes.neighbours import NOBODY, probes_around
 from irradia.export.read_baked import read_baked
 from irradia.field.native_fields import decode_field
 from irradia.formats.probes import ProbeGrid, ProbeSet
@@ -55,6 +56,18 @@ def _probe_cases(folder: Path, name: str, probes: ProbeSet) -> Iterator[Case]:
     for lit in ("probes", "things"):
         expected = probes_irradiance(path, asked, on_surface=lit == "probes")
         yield Case(f"{name}-{lit}", path, lit, asked, expected)
+
+
+def probe_view_cases(folder: Path) -> Iterator[Case]:
+    """The validity of the probes around."""
+    for name, probes in (("grid", grid_probes()), ("octree", octree_probes())):
+        asked = _in_cells(probes)
+        path = write_baked(folder / f"{name}-validity.glb", probes=probes)
+        index, share = probes_around(probes, np.float64(asked.position))
+        known = share * (index != NOBODY)
+        mixed = (known * probes.validity[index]).sum(axis=1) / known.sum(axis=1)
+        shown = np.tile(mixed[:, None], 3)
+        yield Case(f"{name}-validity", path, "probes", asked, shown, "validity", everywhere=False)
 
 
 def _in_cells(probes: ProbeSet) -> Questions:

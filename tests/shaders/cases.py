@@ -54,6 +54,7 @@ class Case:
         expected: (Q, 3) E, or of a view its numbers.
         view: The view that is asked in place of the light.
         max_uniform_bytes: The device's; constants go to a texture where they are more.
+        everywhere: Whether GLSL and HLSL are asked on lavapipe too, not just WGSL there and GLSL in WebGL2.
     """
 
     name: str
@@ -63,6 +64,7 @@ class Case:
     expected: np.ndarray
     view: str | None = None
     max_uniform_bytes: int | None = None
+    everywhere: bool = True
 
     def job(self) -> dict[str, Any]:
         """For web/checks/shader-cases.ts."""

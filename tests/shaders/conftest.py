@@ -1,27 +1,29 @@
-"""All sources of light once on their way through web/checks, and a device to run their texts."""
+"""All sources of light once on their way through web/checks, and once through every target."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from . import wrappers
-from .baked_cases import baked_cases
+from .baked_cases import baked_cases, probe_view_cases
 from .cases import Case, Shader, read_shaders
-from .field_cases import field_cases
+from .field_cases import field_cases, view_cases
 from .lavapipe import Lavapipe, spirv
 
-Ask = Callable[[Case], np.ndarray]
+Answers = dict[str, np.ndarray]
 
 
 @pytest.fixture(scope="session")
 def cases(tmp_path_factory) -> tuple[Case, ...]:
     """Every source of light that the runtime makes shaders of, under names of their own."""
-    made = (*field_cases(), *baked_cases(tmp_path_factory.mktemp("baked")))
+    folder = tmp_path_factory.mktemp("sources")
+    made = (*field_cases(folder), *baked_cases(folder), *view_cases(), *probe_view_cases(folder))
     assert len({case.name for case in made}) == len(made)
     return made
 
@@ -37,13 +39,53 @@ def shaders(cases, web_check, tmp_path_factory) -> dict[str, Shader]:
 
 
 @pytest.fixture(scope="session")
-def lavapipe() -> Lavapipe:
-    return Lavapipe()
+def answers(cases, shaders, web_check, chromium: str, tmp_path_factory) -> Iterator[Callable[[str], Answers]]:
+    """What ``wgsl``, ``glsl`` and ``hlsl`` on lavapipe and ``webgl2`` in Chromium answer, by case.
+
+    Drivers compile on one thread each, so the targets work side by side.
+    """
+    folder = tmp_path_factory.mktemp("spirv")
+    with ThreadPoolExecutor() as pool:
+        work = {
+            "wgsl": pool.submit(by_wgsl, cases, shaders),
+            "glsl": pool.submit(by_glslang, "glsl", wrappers.glsl, cases, shaders, folder),
+            "hlsl": pool.submit(by_glslang, "hlsl", wrappers.hlsl, cases, shaders, folder),
+            "webgl2": pool.submit(by_browser, cases, shaders, web_check, chromium),
+        }
+        yield lambda target: work[target].result()
 
 
-@pytest.fixture(scope="session")
-def in_browser(cases, shaders, web_check, chromium: str) -> dict[str, np.ndarray]:
-    """By case what Chromium's WebGL2 answers, all on one page."""
+def by_wgsl(cases: tuple[Case, ...], shaders: dict[str, Shader]) -> Answers:
+    device = Lavapipe()
+
+    def ask(case: Case) -> np.ndarray:
+        shader = shaders[case.name]
+        return device.ask(shader, wrappers.wgsl(shader, case.view), case.questions.packed())
+
+    return {case.name: ask(case) for case in cases}
+
+
+def by_glslang(
+    language: str,
+    wrap: Callable[[Shader, str | None], str],
+    cases: tuple[Case, ...],
+    shaders: dict[str, Shader],
+    folder: Path,
+) -> Answers:
+    """Through SPIR-V; what a language lacks is left out."""
+    device = Lavapipe()
+
+    def ask(case: Case) -> np.ndarray:
+        shader = shaders[case.name]
+        code = spirv(wrap(shader, None), language, folder, case.name)
+        return device.ask(shader, code, case.questions.packed())
+
+    asked = [case for case in cases if case.everywhere and shaders[case.name].text(language)]
+    return {case.name: ask(case) for case in asked}
+
+
+def by_browser(cases: tuple[Case, ...], shaders: dict[str, Shader], web_check, chromium: str) -> Answers:
+    """All on one page."""
     folder = next(iter(shaders.values())).folder
     asked = []
     for case in cases:
@@ -52,29 +94,6 @@ def in_browser(cases, shaders, web_check, chromium: str) -> dict[str, np.ndarray
         asked.append({"name": case.name, **wrappers.webgl2(shaders[case.name], case.view, questions)})
     (folder / "asked.json").write_text(json.dumps(asked), encoding="utf-8")
     found = web_check("shaders", folder / "asked.json", chromium)
-    for name, answers in found.items():
-        assert not isinstance(answers, str), f"{name}: {answers}"
-    return {name: np.float64(answers).reshape(-1, 4)[:, :3] for name, answers in found.items()}
-
-
-@pytest.fixture(scope="session")
-def ask(shaders, lavapipe, tmp_path_factory) -> dict[str, Ask]:
-    """By language, what a case's shader in it answers on lavapipe."""
-    folder: Path = tmp_path_factory.mktemp("spirv")
-
-    def by_wgsl(case: Case) -> np.ndarray:
-        code = wrappers.wgsl(shaders[case.name], case.view)
-        return lavapipe.ask(shaders[case.name], code, case.questions.packed())
-
-    def by_spirv(language: str, wrap: Callable[[Shader, str | None], str]) -> Ask:
-        def answer(case: Case) -> np.ndarray:
-            code = spirv(wrap(shaders[case.name], case.view), language, folder, case.name)
-            return lavapipe.ask(shaders[case.name], code, case.questions.packed())
-
-        return answer
-
-    return {
-        "wgsl": by_wgsl,
-        "glsl": by_spirv("glsl", wrappers.glsl),
-        "hlsl": by_spirv("hlsl", wrappers.hlsl),
-    }
+    for name, numbers in found.items():
+        assert not isinstance(numbers, str), f"{name}: {numbers}"
+    return {name: np.float64(numbers).reshape(-1, 4)[:, :3] for name, numbers in found.items()}
