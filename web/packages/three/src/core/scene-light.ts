@@ -5,7 +5,7 @@ import type { DirectFrom, LightSource, LitSurface, SceneLight, SourceKind, View 
 import type { FileLights } from "./file-lights.js";
 import { GridLight, type Painter, ScreenLight, type Shading } from "./painter.js";
 import type { ShadowMask } from "./shadow-mask.js";
-import { directOf, noSource, Source, sourceNamed, sourcesOf } from "./sources.js";
+import { addedSource, directOf, noSource, type Source, sourceNamed, sourcesOf } from "./sources.js";
 import { isMesh, looseSurface } from "./surfaces.js";
 import { disposeTextures } from "./textures.js";
 import { Wardrobe } from "./wardrobe.js";
@@ -34,7 +34,8 @@ export class BakedSceneLight implements SceneLight {
   #source: Source;
   #dynamic: Source | undefined;
   #view: View | null = null;
-  #screen: ScreenLight | null = null;
+  #screen: ScreenLight | undefined;
+  #isScreened = false;
   #grid: GridLight | undefined;
   #direct: LightShader | undefined;
 
@@ -69,7 +70,7 @@ export class BakedSceneLight implements SceneLight {
 
   add(name: string, shader: LightShader, kind: SourceKind = "field"): LightSource {
     const direct = directOf(this.baked, this.#painter.limits);
-    const source = new Source(name, kind, shader.quantity, { make: () => shader, direct });
+    const source = addedSource(name, kind, shader, direct);
     const old = this.#sources.find((other) => other.name === name);
     this.#sources = [...this.#sources.filter((other) => other !== old).slice(0, -1), source, this.#none()];
     if (this.#source === old) this.#source = source;
@@ -149,17 +150,19 @@ export class BakedSceneLight implements SceneLight {
   }
 
   get screen(): Texture | null {
-    return this.#screen?.texture ?? null;
+    return this.#isScreened ? (this.#screen?.texture ?? null) : null;
   }
 
   set screen(texture: Texture | null) {
-    if (this.#screen && texture) {
+    const wasScreened = this.#isScreened;
+    this.#isScreened = texture !== null;
+    if (texture) {
+      // One for good, so that materials which read it are made once.
+      this.#screen ??= new ScreenLight(texture);
       this.#screen.texture = texture;
       this.#painter.screenChanged(this.#screen);
-      return;
     }
-    this.#screen = texture && new ScreenLight(texture);
-    this.#apply();
+    if (this.#isScreened !== wasScreened) this.#apply();
   }
 
   get surfaces(): readonly LitSurface[] {
@@ -223,10 +226,11 @@ export class BakedSceneLight implements SceneLight {
 
   #shadingOf({ rectangles, isDynamic }: LitSurface): Shading {
     const hasLightmap = rectangles.length > 0;
+    const screen = this.#isScreened ? this.#screen : undefined;
     const { width, height } = this.baked?.lighting.lightmap ?? { width: 1, height: 1 };
     return {
-      light: this.#screen ?? this.#lightOf(hasLightmap, isDynamic),
-      direct: this.#screen && hasLightmap && this.#source.hasDirectMap ? this.#directMap() : undefined,
+      light: screen ?? this.#lightOf(hasLightmap, isDynamic),
+      direct: screen && hasLightmap && this.#source.hasDirectMap ? this.#directMap() : undefined,
       view: this.#view,
       mask: hasLightmap ? this.#mask : undefined,
       lightmap: hasLightmap ? [width, height] : undefined,

@@ -4,6 +4,7 @@ import {
   directionalShader,
   expect,
   fieldShader,
+  type LightInput,
   type LightShader,
   lightmapShader,
   type Probes,
@@ -15,10 +16,12 @@ import {
 import type { LightSource, SourceKind } from "../types.js";
 
 /** Inputs that every surface has, with a lightmap or without. */
-const EVERYWHERE = new Set(["position", "normal", "surfaceNormal"]);
+const EVERYWHERE: ReadonlySet<LightInput> = new Set<LightInput>(["position", "normal", "surfaceNormal"]);
 
 /** How a source's shaders come about; each is made when first asked for. */
 interface Making {
+  /** Whether it needs no lightmap's uv; said here, so that nobody makes a shader in order to ask. */
+  readonly isEverywhere?: boolean;
   readonly make?: (() => LightShader) | undefined;
   /** Adds the map of direct light, where that is missing. */
   readonly direct?: ((shader: LightShader) => LightShader) | undefined;
@@ -36,9 +39,9 @@ export class Source implements LightSource {
     readonly name: string,
     readonly kind: SourceKind,
     readonly quantity: Quantity,
-    { make, direct, moving }: Making = {},
+    making: Making = {},
   ) {
-    this.#making = { make, moving, direct: quantity === "indirect" ? direct : undefined };
+    this.#making = { ...making, direct: quantity === "indirect" ? making.direct : undefined };
   }
 
   get bare(): LightShader | undefined {
@@ -64,13 +67,24 @@ export class Source implements LightSource {
   }
 
   get isDynamic(): boolean {
-    return this.bare?.inputs.every((input) => EVERYWHERE.has(input)) ?? false;
+    return this.#making.isEverywhere ?? false;
   }
 
   /** Shaders that were made. */
   get made(): LightShader[] {
     return [this.#bare, this.#whole, this.#moving].filter((shader) => shader !== undefined);
   }
+}
+
+/** A source of the page's own. */
+export function addedSource(
+  name: string,
+  kind: SourceKind,
+  shader: LightShader,
+  direct: Making["direct"],
+): Source {
+  const isEverywhere = shader.inputs.every((input) => EVERYWHERE.has(input));
+  return new Source(name, kind, shader.quantity, { make: () => shader, direct, isEverywhere });
 }
 
 /** The source that is always there. */
@@ -97,11 +111,12 @@ export function sourcesOf(baked: BakedLight, hasLiveLights: boolean, limits: Tex
   if (directional) add("directional", quantity, { make: () => directionalShader(baked, limits) });
   if (field) {
     const make = () => fieldShader(field, limits);
-    add("field", field.frame.quantity, { make, direct: directOf(baked, limits) });
+    add("field", field.frame.quantity, { make, direct: directOf(baked, limits), isEverywhere: true });
   }
   if (probes?.structure) {
     const make = () => probeShader(probes, limits);
-    add("probes", probes.light, { make, moving: (bare) => amongProbes(probes, bare, limits) });
+    const moving = (bare: LightShader) => amongProbes(probes, bare, limits);
+    add("probes", probes.light, { make, moving, isEverywhere: true });
   }
   if (probes?.structure?.kind === "grid") add("three-probes", probes.light, {});
   return sources;
