@@ -60,6 +60,29 @@ def test_names_survive(language: str) -> None:
         assert not missing, piece
 
 
+@pytest.mark.parametrize("language", ENDS)
+def test_loops_are_of_the_kind_that_compilers_unroll(language: str) -> None:
+    for path in sorted((SHADERS / language).iterdir()):
+        code = re.sub(r"//.*", "", path.read_text(encoding="utf-8"))
+        assert not re.search(r"\bwhile\b|loop_(?:init|bound)", code), path.name
+
+
+@pytest.mark.usefixtures("web_check")
+def test_tidying_keeps_what_texts_mean() -> None:
+    node = shutil.which("node")
+    assert node is not None
+    command = [node, "--test", ROOT / "web" / "dist" / "shaders" / "tidy.test.js"]
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_all_names_begin_with_ours_and_end_in_letters() -> None:
+    declared = re.compile(r"^(?:fn|const|struct|var<private>)\s+(\w+)", re.MULTILINE)
+    for piece in PIECES:
+        for name in declared.findall((SHADERS / "wgsl" / f"{piece}.wgsl").read_text(encoding="utf-8")):
+            assert re.fullmatch(r"irradia_\w*[a-z]", name), f"{piece}: {name}"
+
+
 def languages_of(piece: str) -> list[str]:
     """Those that a piece can be had in: all, or what it says."""
     wgsl = (SHADERS / "wgsl" / f"{piece}.wgsl").read_text(encoding="utf-8")
