@@ -2,11 +2,14 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import {
   type BakedLight,
+  directionalShader,
   FieldEvaluator,
   gltfFile,
   irradianceOf,
+  lightmapShader,
   planLightTexture,
   probeCoefficients,
+  probeShader,
   readBakedGlb,
   readFieldOf,
   readGlb,
@@ -263,8 +266,14 @@ function summary(bytes: Uint8Array): unknown {
   const arrays = Object.values(probes ?? {}).map((value) =>
     ArrayBuffer.isView(value) ? [...(value as Uint8Array)] : value,
   );
+  const limits = { ...WEBGL2_LIMITS, maxSize: 64 };
+  const costs = [
+    lightmap && lightmapShader(lightmap, 1, "full", limits).cost,
+    directional && directionalShader(light, limits).cost,
+    probes?.structure && probeShader(probes, limits).cost,
+  ];
   const e = field && new FieldEvaluator(field).irradiance([0, 1, 2], [0, 1, 0]);
-  return [texels, arrays, e, [...nodes], shadowMask?.map((png) => [...png])];
+  return [texels, arrays, costs, e, [...nodes], shadowMask?.map((png) => [...png])];
 }
 
 test("a .glb survives random bytes", () => {
