@@ -33,8 +33,6 @@ def test_generated_files_are_fresh() -> None:
 @pytest.mark.parametrize("language", ENDS)
 def test_every_piece_is_there_and_says_where_it_comes_from(language: str) -> None:
     for piece in PIECES:
-        if language not in languages_of(piece):
-            continue
         first = text_of(piece, language).splitlines()[0]
         assert first.startswith(f"// Generated from shaders/wgsl/{piece}.wgsl")
 
@@ -52,8 +50,6 @@ def test_pieces_hold_no_boilerplate(language: str) -> None:
 @pytest.mark.parametrize("language", ENDS)
 def test_names_survive(language: str) -> None:
     for piece in PIECES:
-        if language not in languages_of(piece):
-            continue
         wanted = re.findall(r"^fn (\w+)", (SHADERS / "wgsl" / f"{piece}.wgsl").read_text(), re.MULTILINE)
         text = text_of(piece, language)
         missing = [name for name in wanted if not re.search(rf"\b{name}\(", text)]
@@ -81,13 +77,6 @@ def test_all_names_begin_with_ours_and_end_in_letters() -> None:
     for piece in PIECES:
         for name in declared.findall((SHADERS / "wgsl" / f"{piece}.wgsl").read_text(encoding="utf-8")):
             assert re.fullmatch(r"irradia_\w*[a-z]", name), f"{piece}: {name}"
-
-
-def languages_of(piece: str) -> list[str]:
-    """Those that a piece can be had in: all, or what it says."""
-    wgsl = (SHADERS / "wgsl" / f"{piece}.wgsl").read_text(encoding="utf-8")
-    only = re.search(r"^// only: (.*)$", wgsl, re.MULTILINE)
-    return re.split(r"\s*,\s*", only.group(1)) if only else list(ENDS)
 
 
 def text_of(piece: str, language: str) -> str:

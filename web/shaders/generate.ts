@@ -29,7 +29,6 @@ function generated(pieces: Pieces): Map<string, string> {
   for (const language of Object.keys(LANGUAGES) as Language[]) {
     const helpers = new Set<string>();
     for (const piece of pieces.values()) {
-      if (piece.only.length && !piece.only.includes(language)) continue;
       const translated = inEveryChoice(pieces, piece, language);
       for (const helper of translated.helpers) helpers.add(helper);
       if (language === "glsl") glsl.set(piece.name, translated.text);
@@ -55,8 +54,7 @@ function generated(pieces: Pieces): Map<string, string> {
 function inEveryChoice(pieces: Pieces, piece: Piece, language: Language): Translated {
   const first = translatePiece(pieces, piece, language, {});
   for (const choice of openChoices(pieces, piece)) {
-    for (const { name, only } of alternatives(pieces, choice)) {
-      if (only.length && !only.includes(language)) continue;
+    for (const { name } of alternatives(pieces, choice)) {
       const choices: Choices = { [choice]: name };
       const { text } = translatePiece(pieces, piece, language, choices);
       if (text !== first.text)

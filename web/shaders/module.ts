@@ -20,9 +20,7 @@ export function asModule(pieces: readonly Piece[]): string {
   const given = unique(pieces.flatMap((piece) => piece.given));
   const bound = given.filter((line) => line.startsWith("var"));
   const functions = given.filter((line) => line.startsWith("fn"));
-  const enables = pieces.some(({ wgsl }) => /\bf16\b|vec4h/.test(wgsl)) ? ["enable f16;"] : [];
   return [
-    ...enables,
     ...bound.map(
       (line, i) => `@group(0) @binding(${i}) ${line.replace("array<vec4f>", `array<vec4f, ${STUB_VEC4S}>`)};`,
     ),

@@ -9,8 +9,6 @@ export interface Piece {
   readonly needs: readonly string[];
   /** What whoever uses the piece provides: `var texture: type`, `var<uniform> …` or `fn name(…)`. */
   readonly given: readonly string[];
-  /** Languages that it can be had in; all where the file doesn't say. */
-  readonly only: readonly string[];
   readonly wgsl: string;
   /** Of its functions, constants, structures and private variables. */
   readonly names: readonly string[];
@@ -43,7 +41,7 @@ export function readPiece(name: string, wgsl: string): Piece {
   for (const declared of names) {
     if (!/^irradia_/.test(declared)) throw new Error(`${name}: ${declared} doesn't begin with irradia_`);
   }
-  return { name, needs: list("needs"), given: said("given"), only: list("only"), wgsl, names };
+  return { name, needs: list("needs"), given: said("given"), wgsl, names };
 }
 
 /** Files among which a need chooses; one where it is a file's own name. */
