@@ -108,9 +108,9 @@ def probes_irradiance(path: Path, asked: Questions, *, on_surface: bool) -> np.n
     return np.maximum(irradiance(series, np.float64(asked.normal)), 0.0)
 
 
-def grid_probes() -> ProbeSet:
-    """A lattice with a flat axis's opposite: 4 × 3 × 5 probes, a fifth of them in walls."""
-    origin, spacing, shape = np.float32([-1.0, 0.25, 2.0]), np.float32([0.5, 0.75, 0.4]), (4, 3, 5)
+def grid_probes(shape: tuple[int, int, int]) -> ProbeSet:
+    """A lattice of so many probes, a fifth of them in walls."""
+    origin, spacing = np.float32([-1.0, 0.25, 2.0]), np.float32([0.5, 0.75, 0.4])
     z, y, x = np.meshgrid(*(np.arange(n) for n in reversed(shape)), indexing="ij")
     places = origin + spacing * np.stack([x, y, z], axis=-1).reshape(-1, 3)
     return _probes(places.astype(np.float32), 0.75, ProbeGrid(origin, spacing, shape))

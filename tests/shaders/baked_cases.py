@@ -28,13 +28,14 @@ from .cases import Case, Questions, bilinear, made_questions
 from .field_cases import VECTORS
 
 N_QUESTIONS = 300
+PROBES = {"grid": grid_probes((4, 3, 5)), "flat": grid_probes((3, 1, 4)), "octree": octree_probes()}
 
 
 def baked_cases(folder: Path) -> Iterator[Case]:
     """All of them, each in a .glb of its own in ``folder``."""
     yield from _map_cases(folder)
-    yield from _probe_cases(folder, "grid", grid_probes())
-    yield from _probe_cases(folder, "octree", octree_probes())
+    for name, probes in PROBES.items():
+        yield from _probe_cases(folder, name, probes)
     yield _direct_case(folder)
 
 
@@ -60,7 +61,7 @@ def _probe_cases(folder: Path, name: str, probes: ProbeSet) -> Iterator[Case]:
 
 def probe_view_cases(folder: Path) -> Iterator[Case]:
     """The validity of the probes around."""
-    for name, probes in (("grid", grid_probes()), ("octree", octree_probes())):
+    for name, probes in PROBES.items():
         asked = _in_cells(probes)
         path = write_baked(folder / f"{name}-validity.glb", probes=probes)
         index, share = probes_around(probes, np.float64(asked.position))
