@@ -31,6 +31,22 @@ declare global {
   }
 }
 
+let nCompiled = 0;
+countCalls(WebGL2RenderingContext.prototype, "linkProgram");
+countCalls(GPUDevice.prototype, "createShaderModule");
+
+/** Counts what any renderer compiles on this page. */
+function countCalls<K extends string>(
+  prototype: { [key in K]: (...args: never[]) => unknown },
+  key: K,
+): void {
+  const method = prototype[key];
+  prototype[key] = function (this: unknown, ...args: never[]): unknown {
+    nCompiled += 1;
+    return method.apply(this, args);
+  };
+}
+
 window.runJob = async (job) => {
   try {
     return await drawn(job, await loaded(job));
@@ -51,7 +67,7 @@ async function drawn({ backend, view, plugins, steps }: Job, gltf: GLTF): Promis
     if (light) take(step, scene, light);
     const picture = await drawer.draw(scene, camera);
     for (const { mesh } of light?.surfaces ?? []) for (const each of [mesh.material].flat()) worn.add(each);
-    shots.push(shotOf(picture, light, drawer, worn.size));
+    shots.push(shotOf(picture, light, worn.size));
   }
   const sources = light?.sources.map(({ name, kind, quantity, isDynamic }) => ({
     name,
@@ -124,12 +140,7 @@ function addBall(
   if (isLit) light.lit(ball);
 }
 
-function shotOf(
-  picture: Float32Array,
-  light: SceneLight | undefined,
-  drawer: Drawer,
-  nMaterials: number,
-): Shot {
+function shotOf(picture: Float32Array, light: SceneLight | undefined, nMaterials: number): Shot {
   return {
     picture: base64(picture),
     source: light?.source.name ?? "",
@@ -137,7 +148,7 @@ function shotOf(
     shining: light?.lights.map(({ visible }: Light) => visible) ?? [],
     bytes: light?.bytes ?? 0,
     nMaterials,
-    nPrograms: drawer instanceof WebglDrawer ? (drawer.renderer.info.programs?.length ?? 0) : 0,
+    nCompiled,
   };
 }
 

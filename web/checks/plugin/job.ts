@@ -39,8 +39,8 @@ export interface Shot {
   /** Of lights in the file's order. */
   shining: boolean[];
   bytes: number;
-  /** Programs that the renderer has compiled so far and still uses. */
-  nPrograms: number;
+  /** Programs or shader modules that the page has compiled so far. */
+  nCompiled: number;
   /** Copies of materials that meshes have worn so far. */
   nMaterials: number;
 }

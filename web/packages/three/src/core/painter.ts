@@ -1,6 +1,6 @@
 /** What the two renderers do differently. */
 import type { LightShader, Probes, TextureLimits } from "@irradia/runtime";
-import type { Material, Object3D, Texture } from "three";
+import type { Data3DTexture, Light, Material, Texture } from "three";
 import type { View } from "../types.js";
 import type { ShadowMask } from "./shadow-mask.js";
 
@@ -27,7 +27,20 @@ export class ScreenLight {
 
 /** three.js' own grid of light probes, which stands in the scene and adds its light by itself. */
 export class GridLight {
-  constructor(readonly grid: Object3D) {}
+  constructor(
+    readonly grid: Light,
+    readonly texture: Data3DTexture,
+  ) {}
+
+  get nBytes(): number {
+    return this.texture.image.data?.byteLength ?? 0;
+  }
+
+  dispose(): void {
+    this.grid.removeFromParent();
+    this.grid.dispose();
+    this.texture.dispose();
+  }
 }
 
 /** Writes light into materials; one for each scene. */
@@ -46,5 +59,5 @@ export interface Painter {
   /** Once, before anything is drawn: lights that have baked shadows. */
   shadow(mask: ShadowMask): void;
   /** three.js' own grid of light probes, filled from a grid of ours. */
-  probeGrid(probes: Probes): Object3D;
+  probeGrid(probes: Probes): GridLight;
 }

@@ -3,7 +3,7 @@ import { type BakedLight, expect, type LightShader, lightmapShader } from "@irra
 import type { Group, Light, Material, Mesh, Object3D, Texture } from "three";
 import type { DirectFrom, LightSource, LitSurface, SceneLight, SourceKind, View } from "../types.js";
 import type { FileLights } from "./file-lights.js";
-import { GridLight, type Painter, ScreenLight, type Shading } from "./painter.js";
+import { type GridLight, type Painter, ScreenLight, type Shading } from "./painter.js";
 import type { ShadowMask } from "./shadow-mask.js";
 import { addedSource, directOf, noSource, type Source, sourceNamed, sourcesOf } from "./sources.js";
 import { isMesh, looseSurface } from "./surfaces.js";
@@ -178,8 +178,9 @@ export class BakedSceneLight implements SceneLight {
     const textures = new Set(shaders.flatMap((shader) => shader.textures));
     const uniforms = new Set(shaders.flatMap((shader) => shader.uniforms));
     const ofTextures = [...textures].reduce((sum, { plan }) => sum + plan.nBytes, 0);
+    const ofUniforms = [...uniforms].reduce((sum, { values }) => sum + values.byteLength, 0);
     const ofMask = this.#mask?.texture.image.data?.byteLength ?? 0;
-    return [...uniforms].reduce((sum, { values }) => sum + values.byteLength, ofTextures + ofMask);
+    return ofTextures + ofUniforms + ofMask + (this.#grid?.nBytes ?? 0);
   }
 
   refresh(): void {
@@ -194,7 +195,7 @@ export class BakedSceneLight implements SceneLight {
   dispose(): void {
     for (const { mesh } of this.#surfaces.values()) this.#wardrobe.undress(mesh);
     this.#wardrobe.clear();
-    this.#grid?.grid.removeFromParent();
+    this.#grid?.dispose();
     for (const source of this.#sources) for (const shader of source.made) disposeTextures(shader);
     if (this.#direct) disposeTextures(this.#direct);
     this.#mask?.texture.dispose();
@@ -253,7 +254,7 @@ export class BakedSceneLight implements SceneLight {
 
   #threeGrid(): GridLight | undefined {
     const { probes } = this.baked ?? {};
-    if (probes) this.#grid ??= new GridLight(this.#painter.probeGrid(probes));
+    if (probes) this.#grid ??= this.#painter.probeGrid(probes);
     return this.#grid;
   }
 

@@ -1,6 +1,6 @@
 /** Light in the materials of WebGLRenderer, by onBeforeCompile. */
 import type { LightShader, LightView, Probes, TextureLimits } from "@irradia/runtime";
-import type { IUniform, Material, Object3D, WebGLProgramParametersWithUniforms } from "three";
+import type { IUniform, Material, WebGLProgramParametersWithUniforms } from "three";
 import { GridLight, type Painter, ScreenLight, type Shading } from "../core/painter.js";
 import type { ShadowMask } from "../core/shadow-mask.js";
 import type { Inputs } from "../types.js";
@@ -48,7 +48,7 @@ export class WebGLPainter implements Painter {
     this.#channels = new MaskChannels(mask);
   }
 
-  probeGrid(probes: Probes): Object3D {
+  probeGrid(probes: Probes): GridLight {
     return probeGrid(probes);
   }
 

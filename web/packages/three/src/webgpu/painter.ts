@@ -1,6 +1,6 @@
 /** Light in the materials of WebGPURenderer, by their context's getGI. */
 import type { LightShader, LightView, Probes, TextureLimits } from "@irradia/runtime";
-import type { Material, Object3D } from "three";
+import type { Material } from "three";
 import { context, Fn, renderGroup, screenUV, texture, uniform, vec3, vec4 } from "three/tsl";
 import type { Node, NodeBuilder, TextureNode } from "three/webgpu";
 import { GridLight, type Painter, ScreenLight, type Shading } from "../core/painter.js";
@@ -58,7 +58,7 @@ export class WebGPUPainter implements Painter {
     for (const [light, channel] of mask.channels) shadowLight(light, mask.texture, channel);
   }
 
-  probeGrid(probes: Probes): Object3D {
+  probeGrid(probes: Probes): GridLight {
     return probeGrid(probes);
   }
 
