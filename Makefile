@@ -9,13 +9,14 @@ BIN := .venv/bin
 OUT ?= out/demo
 PYTEST_ARGS ?=
 
-.PHONY: help setup setup-dev viewer demo test check bench
+.PHONY: help setup setup-dev viewer demo test check bench screenshots
 
 help:
 	@echo "make demo    bake our own scene and write everything, with report, to $(OUT)"
 	@echo "make test    run every test"
 	@echo "make check   lint, types and layers, Python and TypeScript"
 	@echo "make bench   run the benchmarks, peers included"
+	@echo "make screenshots  take the README's pictures of the viewer, from the demo in $(OUT)"
 	@echo "make viewer  build the viewer that \`irradia view\` shows"
 	@echo "make setup   only what running needs; the others call it"
 
@@ -43,3 +44,6 @@ check: setup-dev
 
 bench: setup-dev
 	@set -e; for file in bench/*.py; do echo "== $$file"; $(BIN)/python $$file; done
+
+screenshots: setup-dev
+	@$(BIN)/python scripts/screenshots.py $(OUT)

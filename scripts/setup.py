@@ -175,7 +175,8 @@ def install_web() -> None:
         return
     say("npm packages in web/")
     npm = shutil.which("npm") or "npm"
-    if run([npm, "ci", "--no-audit", "--no-fund", "--prefix", str(lock.parent)]) != 0:
+    quietly = ["--no-audit", "--no-fund", "--loglevel=error"]
+    if run([npm, "ci", *quietly, "--prefix", str(lock.parent)]) != 0:
         raise SetupError("npm ci failed in web/; see above.")
     stamp("web", label)
 
