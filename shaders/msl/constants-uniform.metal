@@ -4,6 +4,5 @@
 metal::float4 irradia_constant(
     uint at
 ) {
-    metal::float4 _e3 = irradia_constants[at];
-    return _e3;
+    return irradia_constants[at];
 }

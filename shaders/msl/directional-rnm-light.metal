@@ -13,8 +13,7 @@ metal::float3 irradia_light(
     float page
 ) {
     metal::float3 _e5 = irradia_rnm_weights(normal, surface_normal, tangent);
-    metal::float4 _e8 = irradia_map_scales[0];
-    metal::float3 weights = _e5 * _e8.xyz;
+    metal::float3 weights = _e5 * irradia_map_scales[0].xyz;
     metal::float4 _e11 = irradia_rnm_a_sample(lightmap_uv, page);
     metal::float3 a = _e11.xyz;
     metal::float4 _e13 = irradia_rnm_b_sample(lightmap_uv, page);

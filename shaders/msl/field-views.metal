@@ -15,8 +15,7 @@ metal::float3 irradia_view_hidden(
     metal::float3 normal
 ) {
     irradia_run(position, normal);
-    metal::float4 _e4 = irradia_units[0];
-    metal::float3 units = _e4.xyz;
+    metal::float3 units = irradia_units[0].xyz;
     return metal::float3(0.5) + ((0.5 * units) / (metal::float3(1.0) + metal::abs(units)));
 }
 

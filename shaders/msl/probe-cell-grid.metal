@@ -5,11 +5,8 @@
 metal::float4 irradia_probe_cell(
     metal::float3 position
 ) {
-    metal::float4 _e3 = irradia_probe_layout[2];
-    metal::float3 shape = _e3.xyz;
-    metal::float4 _e7 = irradia_probe_layout[0];
-    metal::float4 _e12 = irradia_probe_layout[1];
-    metal::float3 along = (position - _e7.xyz) / _e12.xyz;
+    metal::float3 shape = irradia_probe_layout[2].xyz;
+    metal::float3 along = (position - irradia_probe_layout[0].xyz) / irradia_probe_layout[1].xyz;
     metal::float3 at = metal::clamp(along, metal::float3(0.0), shape - metal::float3(1.0));
     metal::float3 low = metal::min(metal::floor(at), metal::max(shape - metal::float3(2.0), metal::float3(0.0)));
     return metal::float4(at - low, low.x + (shape.x * (low.y + (shape.y * low.z))));
@@ -19,8 +16,7 @@ uint irradia_probe_corner(
     float cell,
     uint corner
 ) {
-    metal::float4 _e4 = irradia_probe_layout[2];
-    metal::uint3 shape = naga_f2u32(_e4.xyz);
+    metal::uint3 shape = naga_f2u32(irradia_probe_layout[2].xyz);
     metal::uint3 bits = metal::min(metal::uint3(corner & 1u, (corner >> 1u) & 1u, corner >> 2u), shape - metal::uint3(1u));
     return (naga_f2u32(cell) + bits.x) + (shape.x * (bits.y + (shape.y * bits.z)));
 }

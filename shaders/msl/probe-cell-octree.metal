@@ -6,8 +6,7 @@
 uint irradia_probe_cell_word(
     uint index
 ) {
-    metal::float4 _e3 = irradia_probe_layout[4];
-    metal::uint2 shifts = naga_f2u32(_e3.zw);
+    metal::uint2 shifts = naga_f2u32(irradia_probe_layout[4].zw);
     uint x_1 = index & ((1u << shifts.x) - 1u);
     uint row = index >> shifts.x;
     uint y_1 = row & ((1u << shifts.y) - 1u);
@@ -21,11 +20,8 @@ metal::float4 irradia_probe_cell(
     metal::float3 low = {};
     uint word = {};
     metal::float3 share = {};
-    metal::float4 _e3 = irradia_probe_layout[2];
-    metal::float3 shape = _e3.xyz;
-    metal::float4 _e7 = irradia_probe_layout[0];
-    metal::float4 _e12 = irradia_probe_layout[1];
-    metal::float3 at = (position - _e7.xyz) / _e12.xyz;
+    metal::float3 shape = irradia_probe_layout[2].xyz;
+    metal::float3 at = (position - irradia_probe_layout[0].xyz) / irradia_probe_layout[1].xyz;
     low = metal::clamp(metal::floor(at), metal::float3(0.0), shape - metal::float3(1.0));
     uint _e36 = irradia_probe_cell_word(naga_f2u32(low.x + (shape.x * (low.y + (shape.y * low.z)))));
     word = _e36;

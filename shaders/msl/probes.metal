@@ -7,8 +7,7 @@
 metal::uint4 irradia_probe_texel(
     uint index
 ) {
-    metal::float4 _e3 = irradia_probe_layout[3];
-    metal::uint2 shifts = naga_f2u32(_e3.xy);
+    metal::uint2 shifts = naga_f2u32(irradia_probe_layout[3].xy);
     uint x = index & ((1u << shifts.x) - 1u);
     uint row = index >> shifts.x;
     uint y = row & ((1u << shifts.y) - 1u);
@@ -26,8 +25,7 @@ metal::float4 irradia_probe_place(
 uint irradia_probe_word(
     uint index
 ) {
-    metal::float4 _e3 = irradia_probe_layout[3];
-    metal::uint2 shifts = naga_f2u32(_e3.zw);
+    metal::uint2 shifts = naga_f2u32(irradia_probe_layout[3].zw);
     uint x_1 = index & ((1u << shifts.x) - 1u);
     uint row = index >> shifts.x;
     uint y_1 = row & ((1u << shifts.y) - 1u);

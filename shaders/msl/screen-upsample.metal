@@ -31,8 +31,7 @@ metal::float3 irradia_screen_upsampled(
         return metal::float3(0.0);
     }
     metal::float3 _e8 = irradia_screen_place(pixel, _e1.depth);
-    metal::float4 _e11 = irradia_screen_view[0];
-    metal::float2 steps = metal::abs(_e11.zw);
+    metal::float2 steps = metal::abs(irradia_screen_view[0].zw);
     float _e21 = irradia_screen_view[1].x;
     float pixel_size = metal::max(steps.x, steps.y) * metal::mix(_e1.depth, 1.0, _e21);
     metal::uint2 cell = pixel >> metal::uint2(1u, 1u);

@@ -16,23 +16,16 @@ metal::float3 irradia_screen_place(
     metal::uint2 pixel,
     float depth
 ) {
-    metal::float4 _e4 = irradia_screen_view[0];
-    metal::float4 _e9 = irradia_screen_view[0];
-    metal::float2 slope = _e4.xy + (static_cast<metal::float2>(pixel) * _e9.zw);
+    metal::float2 slope = irradia_screen_view[0].xy + (static_cast<metal::float2>(pixel) * irradia_screen_view[0].zw);
     float _e16 = irradia_screen_view[1].x;
     metal::float2 across = slope * metal::mix(depth, 1.0, _e16);
-    metal::float4 _e22 = irradia_screen_view[2];
-    metal::float4 _e28 = irradia_screen_view[3];
-    metal::float4 _e35 = irradia_screen_view[4];
-    metal::float4 _e41 = irradia_screen_view[5];
-    return (((_e22.xyz * across.x) + (_e28.xyz * across.y)) - (_e35.xyz * depth)) + _e41.xyz;
+    return (((irradia_screen_view[2].xyz * across.x) + (irradia_screen_view[3].xyz * across.y)) - (irradia_screen_view[4].xyz * depth)) + irradia_screen_view[5].xyz;
 }
 
 metal::uint2 irradia_screen_sample(
     metal::uint2 cell
 ) {
-    metal::float4 _e5 = irradia_screen_view[1];
-    return metal::min(2u * cell, naga_f2u32(_e5.zw) - metal::uint2(1u, 1u));
+    return metal::min(2u * cell, naga_f2u32(irradia_screen_view[1].zw) - metal::uint2(1u, 1u));
 }
 
 metal::float3 irradia_screen_irradiance(

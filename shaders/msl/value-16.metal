@@ -21,8 +21,7 @@ void irradia_table_add(
     float weight
 ) {
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
-        metal::float2 _e10 = irradia_table_sums[i];
-        irradia_table_sums[i] = _e10 + (weight * float2(as_type<half2>(words[i])));
+        irradia_table_sums[i] = irradia_table_sums[i] + (weight * float2(as_type<half2>(words[i])));
     }
 }
 

@@ -26,10 +26,8 @@ void irradia_table_add(
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
         metal::uint4 lower = (metal::uint4(words[i]) >> metal::uint4(0u, 4u, 8u, 12u)) & metal::uint4(15u);
         metal::uint4 upper = (metal::uint4(words[i]) >> metal::uint4(16u, 20u, 24u, 28u)) & metal::uint4(15u);
-        metal::float4 _e34 = irradia_table_lower[i];
-        irradia_table_lower[i] = _e34 + (weight * (static_cast<metal::float4>(lower) - metal::float4(8.0)));
-        metal::float4 _e44 = irradia_table_upper[i];
-        irradia_table_upper[i] = _e44 + (weight * (static_cast<metal::float4>(upper) - metal::float4(8.0)));
+        irradia_table_lower[i] = irradia_table_lower[i] + (weight * (static_cast<metal::float4>(lower) - metal::float4(8.0)));
+        irradia_table_upper[i] = irradia_table_upper[i] + (weight * (static_cast<metal::float4>(upper) - metal::float4(8.0)));
     }
 }
 

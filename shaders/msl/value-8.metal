@@ -23,8 +23,7 @@ void irradia_table_add(
 ) {
     for (uint i = 0u; i < irradia_table_words; i += 1u) {
         metal::int4 bytes = as_type<metal::int4>(metal::uint4(words[i]) << metal::uint4(24u, 16u, 8u, 0u)) >> metal::uint4(24u);
-        metal::float4 _e23 = irradia_table_sums[i];
-        irradia_table_sums[i] = _e23 + (weight * static_cast<metal::float4>(bytes));
+        irradia_table_sums[i] = irradia_table_sums[i] + (weight * static_cast<metal::float4>(bytes));
     }
 }
 

@@ -28,10 +28,7 @@ export function translatePiece(
   const own = language === "msl" ? [privateMembers(piece.wgsl)] : [];
   for (const chunk of topLevel(whole)) {
     const name = declaredName(chunk);
-    const text = (): string => {
-      const tidied = tidy(chunk);
-      return language === "msl" ? memberConstant(asMember(tidied, all)) : tidied;
-    };
+    const text = (): string => tidy(language === "msl" ? memberConstant(asMember(chunk, all)) : chunk);
     if (name.startsWith("naga_")) helpers.push(text());
     else if (piece.names.includes(name)) own.push(text());
   }
