@@ -14,7 +14,9 @@ from PIL import Image
 
 from irradia.cli import app, gallery_job
 from irradia.cli.gallery_browser import BrowserError, open_page
+from irradia.cli.gallery_shots import find_shots
 from irradia.core.errors import MissingDependencyError
+from irradia.export.web_folder import collect
 
 from .viewing import WEIGHTS, glb, viewer, write_results
 
@@ -182,3 +184,9 @@ def test_a_saved_camera_is_handed_on(baked: Path, tmp_path: Path) -> None:
     eye, target = np.array([1.0, 2.0, 3.0]), np.array([1.0, 2.0, 0.0])
     pose = gallery_job._pose(job, Camera(look_at(eye, target), np.pi / 3))
     assert pose == {"camera": "1,2,3,1,2,2,60"}
+
+
+def test_a_camera_of_one_s_own_leaves_the_reference_out(baked: Path) -> None:
+    (scene,) = collect([baked]).scenes
+    assert [shot.source for shot in find_shots(scene)] == ["reference", "field:0"]
+    assert [shot.source for shot in find_shots(scene, with_reference=False)] == ["field:0"]

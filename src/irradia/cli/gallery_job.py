@@ -14,13 +14,14 @@ from urllib.parse import urlencode
 import numpy as np
 
 from irradia.cli.gallery_browser import BrowserError, Page, open_page
+from irradia.cli.gallery_shots import Shot, damage, find_shots, remark
 from irradia.cli.gallery_socket import SocketError
 from irradia.cli.gallery_viewer import exposure_ev, show, viewer_picture
 from irradia.cli.view_server import Library, ViewServer
 from irradia.core.errors import InputError
 from irradia.core.files import write_atomic
 from irradia.core.progress import Progress
-from irradia.export.web_collection import WebCollection, WebField, WebScene
+from irradia.export.web_collection import WebCollection, WebScene
 from irradia.export.web_folder import collect, find_fields
 from irradia.export.web_viewer import Viewer, find_viewer
 from irradia.report import text
@@ -67,23 +68,6 @@ class GalleryJob:
 
 
 @dataclass(frozen=True)
-class Shot:
-    """One picture to be taken.
-
-    Attributes:
-        name: Its label.
-        source: As the viewer calls it.
-        scene: What the viewer is given: no more than it needs.
-        field: What is shown of it, where it is one.
-    """
-
-    name: str
-    source: str
-    scene: WebScene
-    field: WebField | None = None
-
-
-@dataclass(frozen=True)
 class Taken:
     """A picture with its exposure, or why there is none."""
 
@@ -104,7 +88,7 @@ def run_gallery(job: GalleryJob, progress: Progress) -> dict[str, Any]:
     """
     viewer = find_viewer()
     scene = _scene(job)
-    shots = find_shots(scene)
+    shots = find_shots(scene, with_reference=job.camera is None)
     camera = _camera(job, scene)
     aspect = DEFAULT_ASPECT if camera is None else camera.aspect
     size = job.width, max(2, 2 * round(job.width / aspect / 2))
@@ -123,35 +107,6 @@ def describe(result: dict[str, Any]) -> str:
     lines = [f"{result['out']}: {len(result['pictures']) - len(result['failed'])} pictures"]
     lines += [f"  {each['name']} failed: {each['error']}" for each in result["failed"]]
     return "\n".join(lines)
-
-
-def find_shots(scene: WebScene) -> list[Shot]:
-    """Reference and lightmap where there are any, the field inside the scene, then the others by name.
-
-    Raises:
-        InputError: There is no field.
-    """
-    inside = _inside(scene.file.path)
-    bare = replace(scene, fields=())
-    shots = [Shot("reference", "reference", bare)] if scene.references else []
-    shots += [Shot("lightmap", "lightmap", bare)] if "lightmap" in inside else []
-    shots += [Shot("field in the scene", "field", bare)] if "field" in inside else []
-    shots += [Shot(each.name, "field:0", replace(scene, fields=(each,)), each) for each in scene.fields]
-    if not any(shot.source.startswith("field") for shot in shots):
-        raise InputError(
-            "found no weights", where=str(scene.file.path.parent), fix="Make some with `irradia train`."
-        )
-    return shots
-
-
-def _inside(path: Path) -> set[str]:
-    """What a .glb holds of ours."""
-    from irradia.export.lighting_extension import NAME
-    from irradia.scene.gltf import read_document
-    from irradia.scene.gltf.view import JsonView
-
-    extension = JsonView(read_document(path).json).extension(NAME)
-    return {name for name in ("lightmap", "field") if extension is not None and extension.has(name)}
 
 
 def _scene(job: GalleryJob) -> WebScene:
@@ -200,7 +155,7 @@ def _take_all(
             failed = False
             while waiting and not failed:
                 shot = waiting.pop(0)
-                if shot.field is not None and (problem := _damage(shot.field)):
+                if shot.field is not None and (problem := damage(shot.field)):
                     yield Taken(shot, problem=problem)
                     continue
                 view = {**_KIOSK, "renderer": job.renderer, "left": shot.source, **pose}
@@ -221,17 +176,6 @@ def _take(page: Page, url: str, shot: Shot, timeout_s: float) -> Taken:
         return Taken(shot, problem=str(error))
 
 
-def _damage(field: WebField) -> str:
-    """What is wrong with a file of weights, so that nobody waits for a browser to find out."""
-    from irradia.field.files import read_field
-
-    try:
-        read_field(field.file.path)
-    except InputError as error:
-        return error.message
-    return ""
-
-
 @contextmanager
 def _served(viewer: Viewer, shot: Shot) -> Iterator[str]:
     """Serves one picture's files; gives the page's address."""
@@ -249,7 +193,7 @@ def _served(viewer: Viewer, shot: Shot) -> Iterator[str]:
 def _write(
     job: GalleryJob, scene: WebScene, taken: Sequence[Taken], size: tuple[int, int], ev: float | None
 ) -> None:
-    contacts = [Contact(one.shot.name, one.problem or _remark(one.shot), one.png) for one in taken]
+    contacts = [Contact(one.shot.name, one.problem or remark(one.shot), one.png) for one in taken]
     exposure = "" if ev is None else f", exposure {text.stops(ev)}"
     subtitle = f"{len(contacts)} pictures from one camera{exposure}, drawn by {job.renderer}"
     if job.out.suffix.lower() == ".html":
@@ -258,16 +202,6 @@ def _write(
         data = contact_sheet(scene.name, subtitle, contacts, size)
     with write_atomic(job.out) as stream:
         stream.write(data)
-
-
-def _remark(shot: Shot) -> str:
-    """What a field costs; what light a picture holds."""
-    if shot.source == "reference":
-        spp = shot.scene.references[0].spp
-        return "path-traced" if spp is None else f"path-traced, {spp} samples a pixel"
-    if shot.field is None:
-        return f"in {shot.scene.file.path.name}"
-    return text.size(shot.field.file.path.stat().st_size)
 
 
 def _record(job: GalleryJob, taken: Sequence[Taken], ev: float | None) -> dict[str, Any]:
