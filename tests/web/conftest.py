@@ -1,4 +1,4 @@
-"""The viewer as it is built now, and browsers that are driven through it."""
+"""What browsers drew and how they were driven, once for all tests of a session: that takes the time."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from .drawn import Drawn, MadeScene, draw_scene, make_scene
 from .viewer_files import write_files, write_kept_page
 
 
@@ -38,3 +39,19 @@ def tour(web_check, built_viewer: Path, chromium: str, tmp_path_factory) -> Call
         return web_check("viewer", name, chromium, *(f"{url}={path}" for url, path in served.items()))
 
     return run
+
+
+@pytest.fixture(scope="session")
+def draw(web_check, chromium: str, tmp_path_factory) -> Callable[[str, str], Drawn]:
+    """``draw("cornell", "webgpu")``: a built-in scene in made-up light, by a backend."""
+
+    @cache
+    def made(name: str) -> MadeScene:
+        return make_scene(name, tmp_path_factory.mktemp(name))
+
+    @cache
+    def drawn(name: str, backend: str) -> Drawn:
+        folder = tmp_path_factory.mktemp(f"{name}-{backend}")
+        return draw_scene(made(name), backend, web_check, chromium, folder)
+
+    return drawn

@@ -30,7 +30,7 @@ from irradia.field.field import Field
 from irradia.field.init import new_parameters
 from irradia.field.native_fields import Precision, decode_field, encode_field
 from irradia.field.quantise import round_tables
-from irradia.field.spec import FieldFrame, FieldSpec, Mode
+from irradia.field.spec import FieldFrame, FieldSpec, Mode, Quantity
 from irradia.formats.probes import EMPTY, FILLED, VALID, ProbeGrid, ProbeOctree, ProbeSet
 from irradia.scene.layout import LightmapLayout, Unwrap
 from irradia.scene.load import load_scene
@@ -53,6 +53,7 @@ class FieldCase:
         mode: What comes out.
         direction: Encoding of the normal, where one goes in.
         width, n_hidden_layers: Of its perceptron.
+        quantity: Whether first bounces are in its light.
     """
 
     position: Encoding
@@ -61,21 +62,28 @@ class FieldCase:
     direction: Encoding = _NORMAL
     width: int = 16
     n_hidden_layers: int = 2
+    quantity: Quantity = "full"
 
 
 _HASH = HashGrid(n_levels=4, log2_table_size=9, base_resolution=3, max_resolution=16)
 FIELDS: dict[str, FieldCase] = {
-    "hash-int8": FieldCase(_HASH, "int8", width=64),
+    "hash-int8": FieldCase(_HASH, "int8"),
     "hash-int4": FieldCase(_HASH, "int4"),
     "hash-fp32": FieldCase(_HASH, "fp32", width=32),
     "triplane-int8": FieldCase(TriPlane(20, 4), "int8"),
-    "frequency": FieldCase(Frequency(4), width=100),
+    "frequency": FieldCase(Frequency(4)),
     "one-blob": FieldCase(OneBlob(6), direction=OneBlob(3)),
     "sh": FieldCase(SphericalHarmonics(2), direction=SphericalHarmonics(5)),
     "identity": FieldCase(Identity(), direction=Identity()),
     "composite": FieldCase(Composite((Identity(), _HASH, Frequency(2)))),
     "hash-sh1": FieldCase(_HASH, "int8", "sh1"),
     "triplane-sh2": FieldCase(TriPlane(20, 4), "fp16", "sh2"),
+    "indirect": FieldCase(SphericalHarmonics(2), quantity="indirect"),
+}
+"""Every encoding, way to store it, mode and quantity, small enough for a browser without a GPU."""
+WIDE_FIELDS: dict[str, FieldCase] = {
+    "hash-wide": FieldCase(_HASH, "int8", width=64, n_hidden_layers=3),
+    "frequency-wide": FieldCase(Frequency(4), width=100),
 }
 
 
@@ -92,7 +100,7 @@ def made_field(case: FieldCase, aabb: F32) -> bytes:
         parameters["position"] = values.astype(np.float32)
     if not is_irradiance:
         parameters[f"mlp.{case.n_hidden_layers}.bias"][:3] += 2.0  # the same from all around
-    field = Field(spec, FieldFrame(aabb, 0.5, "full"), parameters)
+    field = Field(spec, FieldFrame(aabb, 0.5, case.quantity), parameters)
     precision: Precision = "fp32" if case.storage == "fp32" else "fp16"
     match case.storage:
         case "int8":
@@ -103,11 +111,12 @@ def made_field(case: FieldCase, aabb: F32) -> bytes:
 
 
 def write_made_scene(path: Path, name: str, mode: DirectionalName, *, octree: bool = False) -> None:
-    """A built-in scene as a .glb with a lightmap, directional maps and probes."""
+    """A built-in scene as a .glb with a lightmap, directional maps, a direct map and probes."""
     scene = load_scene(f"builtin:{name}")
     low, high = bounds(scene)
     probes = made_octree(low, high) if octree else made_grid(low, high)
-    companions = Companions(directional=made_directional(mode), probes=probes)
+    direct = made_pages(Seed(4), 0.1, 0.5)
+    companions = Companions(directional=made_directional(mode), direct=direct, probes=probes)
     pages = made_pages(Seed(1), 0.5, 1.5)
     write_baked_glb(path, scene, made_layout(scene), pages, companions)
 

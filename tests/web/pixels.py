@@ -24,8 +24,9 @@ from numpy.typing import NDArray
 
 from irradia.bake.directional_modes import MODES, SurfaceFrame
 from irradia.bake.probes.interpolation import interpolate
-from irradia.core.colour import automatic_exposure_ev, srgb_from_linear
+from irradia.core.colour import srgb_from_linear
 from irradia.core.sh import irradiance
+from irradia.export.direct_extension import read_direct
 from irradia.export.probes_extension import read_baked_probes
 from irradia.export.read_baked import BakedScene, read_baked
 from irradia.field.field import Field
@@ -100,16 +101,16 @@ class Pixels:
         self._answer = answer
         self.hit: NDArray[np.bool_] = answer.pictures["position"][..., 3] == 1.0
         self.dark, self.white = self._rows("unlit"), self._rows("white")
-        self.position, self.normal = self._rows("position"), self._rows("normal")
-        self.surface_normal = self._rows("surfaceNormal")
+        self.position = self._rows("position")
+        self.normal, self.surface_normal = unit(self._rows("normal")), unit(self._rows("surfaceNormal"))
 
     def picture(self, irradiance: Image) -> Image:
         """(N, 3) colours where E (N, 3) arrives."""
         return self.dark + (self.white - self.dark) * irradiance
 
-    def drawn(self, name: str) -> Image:
-        """(N, 3) colours of a picture that the page drew."""
-        return self._rows(name)
+    def rows(self, picture: Image) -> Image:
+        """(N, 3) colours of a picture of the same view."""
+        return picture[self.hit][:, :3]
 
     @cached_property
     def frame(self) -> SurfaceFrame:
@@ -119,7 +120,7 @@ class Pixels:
         aside = np.where(np.abs(normal[:, 1:2]) < 0.9, (0.0, 1.0, 0.0), (1.0, 0.0, 0.0))
         is_bent = rows[:, 3:] != 0.0
         across = np.cross(aside, normal)
-        tangent = np.where(is_bent, rows[:, :3], across / np.linalg.norm(across, axis=1, keepdims=True))
+        tangent = unit(np.where(is_bent, rows[:, :3], across))
         sign = np.where(is_bent, rows[:, 3:], 1.0)
         return SurfaceFrame(normal, tangent, np.cross(normal, tangent) * sign)
 
@@ -131,7 +132,7 @@ class Pixels:
         return rows[:, :2], np.column_stack([self._answer.objects[numbers[:, 0] - 1], numbers[:, 1]])
 
     def _rows(self, name: str) -> Image:
-        return self._answer.pictures[name][self.hit][:, :3]
+        return self.rows(self._answer.pictures[name])
 
 
 class BakedReference:
@@ -151,6 +152,13 @@ class BakedReference:
     def lightmap(self, pixels: Pixels) -> Image:
         """Of the plain map."""
         return np.pi * self._texels(self._baked.pages, pixels)
+
+    def direct(self, pixels: Pixels) -> Image:
+        """What fields of indirect light lack."""
+        assert self._baked.scene.document is not None
+        pages = read_direct(self._baked.scene.document)
+        assert pages is not None
+        return np.pi * self._texels(pages, pixels)
 
     def directional(self, pixels: Pixels) -> Image:
         """Of the map and its companions."""
@@ -203,8 +211,13 @@ def bilinear(pages: NDArray[np.float32], page: NDArray, uv: Image) -> Image:
     return total
 
 
+def unit(vectors: Image) -> Image:
+    """(N, 3) of length 1, in more digits than the browser gave."""
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+
 def steps_apart(drawn: Image, expected: Image) -> Image:
-    """(N, 3) differences in steps of 8-bit sRGB, at the exposure that shows what was expected well."""
-    exposure = 2.0 ** automatic_exposure_ev(expected)
+    """(N, 3) differences in steps of 8-bit sRGB, where four fifths of what was expected aren't clipped."""
+    exposure = 1.0 / np.quantile(expected, 0.8)
     shown = [255.0 * srgb_from_linear(exposure * picture) for picture in (drawn, expected)]
     return np.abs(shown[0] - shown[1])

@@ -1,13 +1,12 @@
 /** Draws a scene in its baked light, and what Python needs to work out the same pixels. */
 import { fieldShader, readField } from "@irradia/runtime";
 import type { SceneLight } from "@irradia/three";
-import { AmbientLight, BufferAttribute, Matrix4, Mesh, type Object3D, PerspectiveCamera, Scene } from "three";
+import { AmbientLight, BufferAttribute, Mesh, type Object3D, Scene } from "three";
 import { type GLTF, GLTFLoader, type GLTFParser } from "three/addons/loaders/GLTFLoader.js";
+import { cameraOf } from "./pixels/camera.js";
 import type { Drawer } from "./pixels/drawer.js";
+import { newDrawer } from "./pixels/new-drawer.js";
 import type { Answer, Request } from "./pixels/request.js";
-import { WebglDrawer } from "./pixels/webgl-drawer.js";
-import { WebgpuDrawer } from "./pixels/webgpu-drawer.js";
-import type { View } from "./view.js";
 
 declare global {
   interface Window {
@@ -16,12 +15,9 @@ declare global {
 }
 
 window.pixels = async (request) => {
-  const { width, height } = request.view;
-  const { backend } = request;
-  const drawer =
-    backend === "webgl" ? new WebglDrawer(width, height) : await WebgpuDrawer.create(backend, width, height);
+  const drawer = await newDrawer(request.backend, request.view);
   const pictures = new Map<string, Float32Array>();
-  const objects = await drawChannels(drawer, request, pictures);
+  const objects = request.channels.length > 0 ? await drawChannels(drawer, request, pictures) : [];
   await drawPictures(drawer, request, pictures);
   return {
     backend: drawer.backend,
@@ -39,6 +35,7 @@ async function drawChannels(
   const objects = numberObjects(gltf);
   const ambient = new AmbientLight(0xffffff, 1);
   const scene = new Scene().add(gltf.scene, ambient);
+  hideSeeThrough(scene);
   const show = drawer.showChannels(scene);
   for (const channel of channels) {
     ambient.intensity = channel === "white" ? 1 : 0;
@@ -61,12 +58,22 @@ async function drawPictures(
     light.add(name, fieldShader(readField(new Uint8Array(bytes)), drawer.limits));
   }
   const scene = new Scene().add(gltf.scene);
+  hideSeeThrough(scene);
   for (const [name, { source, how }] of Object.entries(request.pictures)) {
     light.use(source);
     const pass = drawer.newPass(light, how);
     pictures.set(name, await drawer.draw(scene, cameraOf(request.view), pass));
     pass?.dispose();
   }
+}
+
+/** What shows through a surface isn't told by what the surface's pixel shows. */
+function hideSeeThrough(scene: Object3D): void {
+  scene.traverse((object) => {
+    if (!(object instanceof Mesh)) return;
+    const { transparent, transmission = 0 } = object.material;
+    object.visible = !transparent && transmission === 0;
+  });
 }
 
 /** Gives each mesh attributes for its number and its lightmap's uv, the set that the file says. */
@@ -95,13 +102,6 @@ function placeOf(mesh: Mesh, parser: GLTFParser): Answer["objects"][number] {
   if (node === undefined || node === null) throw new Error(`${mesh.name} belongs to no node`);
   const isOwn = known(mesh)?.nodes !== undefined;
   return { node, primitive: isOwn ? 0 : (mesh.parent?.children.indexOf(mesh) ?? 0) };
-}
-
-function cameraOf({ width, height, worldFromCamera, yfovRad }: View): PerspectiveCamera {
-  if (yfovRad === undefined) throw new Error("a view needs yfovRad");
-  const camera = new PerspectiveCamera((yfovRad * 180) / Math.PI, width / height, 0.05, 200);
-  new Matrix4().fromArray(worldFromCamera).decompose(camera.position, camera.quaternion, camera.scale);
-  return camera;
 }
 
 function base64(values: Float32Array): string {

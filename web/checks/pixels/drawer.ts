@@ -10,6 +10,10 @@ export interface Drawer {
   readonly limits: TextureLimits;
   /** Reads the light of files. */
   readonly plugin: IrradiaPlugin;
+  /** Draws a frame; nobody waits for the GPU. */
+  show(scene: Scene, camera: Camera, pass?: ScreenPass): void;
+  /** Waits until all that was drawn is done. */
+  finish(): Promise<void>;
   /** RGBA, linear, rows from the top; where nothing is, 0. */
   draw(scene: Scene, camera: Camera, pass?: ScreenPass): Promise<Float32Array>;
   /** Lets all materials of a scene show channels; the function it gives picks one, or none any more. */

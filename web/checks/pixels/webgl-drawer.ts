@@ -67,13 +67,22 @@ export class WebglDrawer implements Drawer {
     return how === "inline" ? undefined : new IrradiancePass(this.renderer, light, { resolution: how });
   }
 
-  async draw(scene: Scene, camera: Camera, pass?: ScreenPass): Promise<Float32Array> {
-    const { width, height } = this.#target;
-    const rgba = new Float32Array(4 * width * height);
+  show(scene: Scene, camera: Camera, pass?: ScreenPass): void {
     this.renderer.setRenderTarget(this.#target);
     pass?.render(scene, camera);
     this.renderer.clear();
     this.renderer.render(scene, camera);
+  }
+
+  /** Reading a pixel waits for it; `finish` of WebGL may not. */
+  async finish(): Promise<void> {
+    this.renderer.readRenderTargetPixels(this.#target, 0, 0, 1, 1, new Float32Array(4));
+  }
+
+  async draw(scene: Scene, camera: Camera, pass?: ScreenPass): Promise<Float32Array> {
+    const { width, height } = this.#target;
+    const rgba = new Float32Array(4 * width * height);
+    this.show(scene, camera, pass);
     await this.renderer.readRenderTargetPixelsAsync(this.#target, 0, 0, width, height, rgba);
     const error = this.renderer.getContext().getError();
     if (error !== 0) throw new Error(`WebGL reported error ${error}`);

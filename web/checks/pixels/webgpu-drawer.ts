@@ -4,6 +4,7 @@ import type { Camera, Scene } from "three";
 import {
   attribute,
   bitangentView,
+  cameraViewMatrix,
   cameraWorldMatrix,
   context,
   float,
@@ -11,7 +12,6 @@ import {
   negateOnBackSide,
   normalViewGeometry,
   normalWorld,
-  normalWorldGeometry,
   positionWorld,
   renderGroup,
   select,
@@ -67,12 +67,21 @@ export class WebgpuDrawer implements Drawer {
     return how === "inline" ? undefined : new IrradiancePass(this.renderer, light, { resolution: how });
   }
 
-  async draw(scene: Scene, camera: Camera, pass?: ScreenPass): Promise<Float32Array> {
-    const { width, height } = this.#target;
+  show(scene: Scene, camera: Camera, pass?: ScreenPass): void {
     this.renderer.setRenderTarget(this.#target);
     pass?.render(scene, camera);
     this.renderer.clear();
     this.renderer.render(scene, camera);
+  }
+
+  async finish(): Promise<void> {
+    this.renderer.initRenderTarget(this.#target);
+    await this.renderer.readRenderTargetPixelsAsync(this.#target, 0, 0, 1, 1);
+  }
+
+  async draw(scene: Scene, camera: Camera, pass?: ScreenPass): Promise<Float32Array> {
+    const { width, height } = this.#target;
+    this.show(scene, camera, pass);
     const read = await this.renderer.readRenderTargetPixelsAsync(this.#target, 0, 0, width, height);
     if (!(read instanceof Float32Array)) throw new Error("expected a target of floats");
     return this.backend === "webgpu" ? read : flipped(read, width, height);
@@ -84,7 +93,7 @@ export class WebgpuDrawer implements Drawer {
       white: (picture) => picture,
       position: () => vec4(positionWorld, 1),
       normal: () => vec4(normalWorld, 1),
-      surfaceNormal: () => vec4(normalWorldGeometry, 1),
+      surfaceNormal: () => vec4(facing().transformNormalByInverseViewMatrix(cameraViewMatrix), 1),
       tangent: (_, builder) => tangentOf(builder),
       lightmapUv: () => {
         const own = vec4(attribute("lightmapUv", "vec2"), attribute("objectNumber", "float"), 0);
@@ -105,11 +114,16 @@ export class WebgpuDrawer implements Drawer {
   }
 }
 
+/** The vertices' normal in view space, turned to the viewer. */
+function facing(): Node<"vec3"> {
+  return negateOnBackSide(normalViewGeometry);
+}
+
 /** In world space, w the bitangent's sign; 0 where no normal map asks for it. */
 function tangentOf({ material }: NodeBuilder): Node<"vec4"> {
   if (!("normalMap" in material && material.normalMap)) return vec4(0);
   const bitangent = bitangentView as unknown as Node<"vec3">;
-  const turn = negateOnBackSide(normalViewGeometry).cross(tangentView).dot(bitangent);
+  const turn = facing().cross(tangentView).dot(bitangent);
   const along = tangentView.transformDirection(cameraWorldMatrix) as Node<"vec3">;
   return vec4(along, turn.sign() as Node<"float">);
 }

@@ -92,17 +92,17 @@ export abstract class BaseIrradiancePass<Target extends DrawnTarget> {
    * be called before each frame, with the renderer's target set to what the frame will be drawn to.
    *
    * @returns whether the pass lights the frame: sources that need more than position and normals, such as
-   *   lightmaps, are left to the materials
+   *   lightmaps, are left to the materials, and so are debug views
    */
   render(scene: Object3D, camera: Camera): boolean {
-    const { shader } = this.#light.source;
-    if (!shader || !isForScreens(shader) || this.#light.view !== null) {
+    const { bare } = this.#light.source;
+    if (!bare || !isForScreens(bare) || this.#light.view !== null) {
       this.#light.screen = null;
       return false;
     }
     this.#resize();
     this.#drawSurfaces(scene, camera);
-    this.#drawLight(shader, camera);
+    this.#drawLight(bare, camera);
     this.#light.screen = this.#irradiance.texture;
     return true;
   }
