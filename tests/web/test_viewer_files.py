@@ -13,15 +13,15 @@ HOSTILE = {  # by file, words that the panel says
     "cut.glb": "found",
     "no-json.glb": "JSON",
     "light.glb": "/extensions/IRRADIA_lighting/lightmap",
-    "cut.safetensors": "expected",
-    "cut.safetensors.zst": "expected",
+    "cut.safetensors": "Expected",
+    "cut.safetensors.zst": "Expected",
     "infinite.safetensors": "finite",
-    "cut.bin": "expected",
-    "cut.hdr": "Radiance",
+    "cut.bin": "Expected",
+    "cut.hdr": "more pixels",
     "cut.exr": "OpenEXR",
     "cut.png": "PNG",
     "notes.txt": "another",
-    "empty.glb": "found",
+    "empty.glb": "glTF 2.0",
 }
 
 

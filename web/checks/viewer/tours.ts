@@ -61,7 +61,9 @@ async function sides(driver: Driver): Promise<Record<string, unknown>> {
   await driver.set({ compare: "error" });
   pictures.error = await driver.picture();
   const shown = await driver.texts(".numbers");
-  await driver.set({ right: "lightmap" });
+  await driver.set({ left: "three-probes", compare: "single" });
+  pictures["three-probes"] = await driver.picture();
+  await driver.set({ left: "lightmap", right: "lightmap", compare: "error" });
   const same = await driver.status("difference");
   pictures.noError = await driver.picture();
   return { pictures, split, numbers, shown, same };
@@ -167,10 +169,29 @@ async function hands(driver: Driver): Promise<Record<string, unknown>> {
   await page.setViewportSize({ width: 200, height: 300 });
   await driver.settled();
   const size = await page.evaluate(canvasSize);
+  const session = await page.context().newCDPSession(page);
+  const metrics = { width: 200, height: 300, deviceScaleFactor: 2, mobile: false };
+  await session.send("Emulation.setDeviceMetricsOverride", metrics);
+  await page.waitForFunction(() => document.querySelector("canvas")?.width === 400);
+  await driver.settled();
+  const dense = await page.evaluate(canvasSize);
   await page.keyboard.press("n");
   const panel = await page.locator(".panel").boundingBox();
   const statistics = await driver.status("statistics");
-  return { places, still, orbited, flown, walked, isHelpOpen, compare, navigation, size, panel, statistics };
+  return {
+    places,
+    still,
+    orbited,
+    flown,
+    walked,
+    isHelpOpen,
+    compare,
+    navigation,
+    size,
+    dense,
+    panel,
+    statistics,
+  };
 }
 
 /** A browser without WebGPU, whose context is lost as well. */
@@ -181,7 +202,9 @@ async function webgl2(driver: Driver): Promise<Record<string, unknown>> {
   await driver.set({ compare: "error" });
   const difference = await driver.status("difference");
   await driver.set({ compare: "split" });
-  const messages = await driver.page.evaluate(loseContext);
+  const waiting = driver.page.evaluate(untilOtherCanvas);
+  await driver.page.evaluate(loseContext);
+  const messages = await waiting;
   await driver.settled();
   return {
     told,
@@ -191,6 +214,18 @@ async function webgl2(driver: Driver): Promise<Record<string, unknown>> {
     after: await driver.picture(),
     recovered: await driver.told(),
   };
+}
+
+/** The GPU's process ends, as after a driver's mistake. */
+async function crash(driver: Driver): Promise<Record<string, unknown>> {
+  const told = await driver.open(`?scene=${SCENE}&left=lightmap&panel=0`);
+  const before = await driver.picture();
+  const waiting = driver.page.evaluate(untilOtherCanvas);
+  const browser = await driver.page.context().browser()?.newBrowserCDPSession();
+  await browser?.send("Browser.crashGpuProcess").catch(() => {}); // it ends before it answers
+  const messages = await waiting;
+  await driver.settled();
+  return { told, before, messages, after: await driver.picture(), recovered: await driver.told() };
 }
 
 /** A page that holds its scene itself, and a kiosk. */
@@ -212,6 +247,7 @@ export const TOURS: Readonly<Record<string, Tour>> = {
   hostile,
   hands,
   webgl2,
+  crash,
   kept,
 };
 
@@ -225,13 +261,16 @@ function canvasSize(): { canvas: number[]; layout: number[] } {
   return { canvas: [canvas?.width ?? 0, canvas?.height ?? 0], layout: [clientWidth, clientHeight] };
 }
 
-/** @returns what the page says until it has a context again */
-async function loseContext(): Promise<string[]> {
+/** What the page says until it has a context again. */
+async function untilOtherCanvas(): Promise<string[]> {
   const messages: string[] = [];
   const end = irradiaViewer.status.subscribe(() => messages.push(String(irradiaViewer.status.value.message)));
   const canvas = document.querySelector("canvas");
-  canvas?.getContext("webgl2")?.getExtension("WEBGL_lose_context")?.loseContext();
   while (document.querySelector("canvas") === canvas) await new Promise((resolve) => setTimeout(resolve, 20));
   end();
   return messages;
+}
+
+function loseContext(): void {
+  document.querySelector("canvas")?.getContext("webgl2")?.getExtension("WEBGL_lose_context")?.loseContext();
 }

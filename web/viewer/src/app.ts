@@ -140,6 +140,17 @@ export class App {
       this.#loop?.invalidate();
     });
     new ResizeObserver(() => this.#resize()).observe(this.host);
+    this.#watchPixelRatio();
+  }
+
+  /** Windows move between displays, and browsers zoom. */
+  #watchPixelRatio(): void {
+    const query = matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`);
+    const onChange = (): void => {
+      this.#resize();
+      this.#watchPixelRatio();
+    };
+    query.addEventListener("change", onChange, { once: true });
   }
 
   #resize(): void {

@@ -1,7 +1,9 @@
 /** Starts the page: its address and manifest say what to open. */
 import { App } from "./app.js";
+import type { Manifest } from "./files/manifest.js";
 import { manifestOfPage } from "./files/page-manifest.js";
 import { problemOf } from "./files/problem.js";
+import type { ViewerState } from "./state/state.js";
 import { NO_STATUS } from "./state/status.js";
 import { Store } from "./state/store.js";
 import { readPageOptions, readState } from "./state/url.js";
@@ -30,11 +32,30 @@ Object.assign(globalThis, {
 async function start(): Promise<void> {
   await app.start();
   const manifest = await manifestOfPage();
-  const { scene, field, environment } = state.value;
-  const entry = manifest?.scenes[scene === "" ? manifest.start.scene : Number(scene)];
-  if (entry) await app.session.openManifest(entry);
-  else if (scene !== "") await app.session.openUrl(scene);
+  if (manifest) state.set(startOf(manifest.start, state.value));
+  await openScene(manifest);
+  const { field, environment } = state.value;
   for (const url of [field, environment]) if (url !== "") await app.session.openUrl(url);
   if (options.pose !== undefined) app.lookFromPicture(options.pose);
   await app.settled();
+  state.subscribe((now, before) => {
+    if (now.scene !== before.scene) void openScene(manifest);
+  });
+}
+
+/** The manifest's scene of the number that the state says, or the one at its address. */
+async function openScene(manifest: Manifest | undefined): Promise<void> {
+  const { scene } = state.value;
+  const entry = manifest?.scenes[scene === "" ? manifest.start.scene : Number(scene)];
+  status.set({ scenes: manifest?.scenes.map(({ name }) => name) ?? [] });
+  if (entry) await app.session.openManifest(entry);
+  else if (scene !== "") await app.session.openUrl(scene);
+}
+
+/** What a manifest wants to be seen first, where the address doesn't say. */
+function startOf({ source, compare }: Manifest["start"], { left, right }: ViewerState): Partial<ViewerState> {
+  return {
+    ...(source !== "" && left === "" && { left: source }),
+    ...(compare !== "" && right === "" && { right: compare, compare: "split" as const }),
+  };
 }

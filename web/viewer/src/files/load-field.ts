@@ -12,11 +12,19 @@ import { ZSTDDecoder } from "three/addons/libs/zstddec.module.js";
 import type { Model } from "../scene/model.js";
 import { kindOf, type NamedFile } from "./kinds.js";
 
+export interface LoadedField {
+  readonly field: Field;
+  /** Of its file. */
+  readonly bytes: number;
+}
+
 /** Reads .safetensors, packed or not, and .bin of our own conventions. */
-export async function loadField(file: NamedFile): Promise<Field> {
+export async function loadField(file: NamedFile): Promise<LoadedField> {
   const { name, bytes } = file;
-  if (kindOf(file) === "field-bin") return readFieldBin(bytes, name);
-  return readField(bytes, { unzstd: await readyUnzstd(), where: name });
+  const isBin = kindOf(file) === "field-bin";
+  const options = { where: name, ...(isBin ? {} : { unzstd: await readyUnzstd() }) };
+  const field = isBin ? readFieldBin(bytes, name) : readField(bytes, options);
+  return { field, bytes: bytes.length };
 }
 
 /**
@@ -24,10 +32,16 @@ export async function loadField(file: NamedFile): Promise<Field> {
  *
  * @param id what the source is to be named
  */
-export function addField(model: Model | undefined, field: Field, id: string, limits: TextureLimits): void {
+export function addField(
+  model: Model | undefined,
+  { field, bytes }: LoadedField,
+  id: string,
+  limits: TextureLimits,
+): void {
   expect(model !== undefined, "a field lights a scene, and there is none", id, "Drop its scene first.");
   model.light.add(id, fieldShader(field, limits));
   model.fields.set(id, field);
+  model.fieldBytes.set(id, bytes);
 }
 
 async function readyUnzstd(): Promise<Unzstd> {

@@ -31,7 +31,14 @@ export async function loadScene(
   loader.register(irradia({ limits }));
   try {
     const gltf = await parse(loader, file);
-    return makeModel(file.name, file.bytes.length, gltf.scene, gltf.userData.irradia);
+    const views: { byteLength: number }[] = gltf.parser.json.bufferViews ?? [];
+    const viewBytes = views.map(({ byteLength }) => byteLength);
+    return makeModel(
+      file.name,
+      { file: file.bytes.length, views: viewBytes },
+      gltf.scene,
+      gltf.userData.irradia,
+    );
   } catch (error) {
     if (error instanceof InputError) throw error;
     const message = error instanceof Error ? error.message : String(error);

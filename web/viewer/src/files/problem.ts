@@ -9,6 +9,9 @@ export interface Problem {
   readonly fix: string;
 }
 
+/** Where nobody knows better. */
+const DAMAGED = "The file may be damaged: write it again, or copy it again.";
+
 /**
  * @param error anything that was thrown
  * @param name of the file that was being opened
@@ -16,10 +19,10 @@ export interface Problem {
 export function problemOf(error: unknown, name: string): Problem {
   const title = `Can't open ${name}`;
   if (error instanceof InputError) {
-    return { title, finding: sentence(error.finding), where: error.where, fix: error.fix };
+    return { title, finding: sentence(error.finding), where: error.where, fix: error.fix || DAMAGED };
   }
   const message = error instanceof Error ? error.message : String(error);
-  return { title, finding: sentence(message), where: name, fix: "Is the file whole? Try to write it again." };
+  return { title, finding: sentence(message), where: name, fix: DAMAGED };
 }
 
 function sentence(text: string): string {

@@ -10,10 +10,16 @@ export interface NamedPose {
   readonly pose: Pose;
 }
 
+/** What came over the wire. */
+export interface FileBytes {
+  readonly file: number;
+  /** Of each buffer view. */
+  readonly views: readonly number[];
+}
+
 export interface Model {
   readonly name: string;
-  /** Of the file, as it came. */
-  readonly bytes: number;
+  readonly bytes: FileBytes;
   readonly root: Group;
   readonly light: SceneLight;
   readonly box: Box;
@@ -21,12 +27,14 @@ export interface Model {
   readonly nTriangles: number;
   /** By the names of their sources: the file's own, and those that were added. */
   readonly fields: Map<string, Field>;
+  /** Bytes of fields that came in files of their own, likewise. */
+  readonly fieldBytes: Map<string, number>;
   /** Whether it has lights of its own. */
   readonly hasLights: boolean;
 }
 
 /** What is known of a scene once it is loaded. */
-export function makeModel(name: string, bytes: number, root: Group, light: SceneLight): Model {
+export function makeModel(name: string, bytes: FileBytes, root: Group, light: SceneLight): Model {
   root.updateMatrixWorld(true);
   const box = boxOf(root);
   let [nTriangles, hasLights] = [0, false];
@@ -35,7 +43,18 @@ export function makeModel(name: string, bytes: number, root: Group, light: Scene
     hasLights ||= "isLight" in object;
   });
   const fields = new Map<string, Field>(light.baked?.field ? [["field", light.baked.field]] : []);
-  return { name, bytes, root, light, box, cameras: camerasOf(root, box), nTriangles, fields, hasLights };
+  return {
+    name,
+    bytes,
+    root,
+    light,
+    box,
+    cameras: camerasOf(root, box),
+    nTriangles,
+    fields,
+    fieldBytes: new Map(),
+    hasLights,
+  };
 }
 
 /** What a camera sees at first: the file's own, else all of the scene. */

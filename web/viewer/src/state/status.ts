@@ -15,6 +15,8 @@ export interface Status {
   readonly message: string;
   /** 0 … 1 of a download; undefined where nobody knows. */
   readonly progress: number | undefined;
+  /** Names of the manifest's scenes. */
+  readonly scenes: readonly string[];
   readonly model: Model | undefined;
   readonly references: readonly Reference[];
   readonly choices: readonly SideChoice[];
@@ -38,6 +40,7 @@ export const NO_STATUS: Status = {
   phase: "empty",
   message: "",
   progress: undefined,
+  scenes: [],
   model: undefined,
   references: [],
   choices: [],

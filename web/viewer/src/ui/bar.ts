@@ -4,6 +4,7 @@ import type { Store } from "../state/store.js";
 import { el, icon, iconButton } from "./dom.js";
 
 export interface BarActions {
+  readonly openScene: (index: number) => void;
   readonly openFiles: () => void;
   readonly savePicture: () => void;
   readonly copyLink: () => void;
@@ -32,6 +33,7 @@ export function bar(status: Store<Status>, actions: BarActions): HTMLElement {
     { class: "bar" },
     el("span", { class: "brand" }, "Irradia"),
     name,
+    sceneMenu(status, actions.openScene),
     progress,
     el("span", { class: "space" }),
     el(
@@ -46,4 +48,18 @@ export function bar(status: Store<Status>, actions: BarActions): HTMLElement {
     iconButton("help", "Keys (?)", actions.help),
     iconButton("panel", "Settings (N)", actions.togglePanel),
   );
+}
+
+/** Of a manifest with several scenes. */
+function sceneMenu(status: Store<Status>, openScene: (index: number) => void): HTMLElement {
+  const menu = el("select", { class: "scenes", "aria-label": "Scene", hidden: true });
+  menu.addEventListener("change", () => openScene(menu.selectedIndex));
+  status.watch(
+    ({ scenes }) => scenes,
+    (scenes) => {
+      menu.replaceChildren(...scenes.map((scene) => el("option", {}, scene)));
+      menu.hidden = scenes.length < 2;
+    },
+  );
+  return menu;
 }

@@ -19,6 +19,7 @@ export function buildPage(app: App): void {
   const openFiles = (): void => pickFiles((files) => void openAll(app, files));
   const actions = {
     openFiles,
+    openScene: (index: number) => state.set({ scene: String(index), camera: undefined }),
     savePicture: () => void savePicture(app).then(() => say(toast, "Picture saved")),
     copyLink: () =>
       void copyLink(app).then((done) => say(toast, done ? "Link copied" : "The address is the link")),

@@ -1,5 +1,5 @@
 /** Numbers about what is drawn, for the panel. */
-import type { Field } from "@irradia/runtime";
+import { type Field, type Lighting, viewsOfLighting } from "@irradia/runtime";
 import type { LightSource } from "@irradia/three/webgpu";
 import type { Model } from "../scene/model.js";
 import type { BackendName } from "./renderer.js";
@@ -26,6 +26,7 @@ export function statisticsOf(
 ): Statistic[] {
   const shader = source?.shader;
   const field = model.fields.get(source?.name ?? "");
+  const wire = source && wireBytes(model, source);
   const hint =
     times.gpuMs === undefined
       ? "By the CPU's clock: this browser has no timestamp queries."
@@ -39,7 +40,10 @@ export function statisticsOf(
       hint,
     },
     { label: "Triangles", value: model.nTriangles.toLocaleString("en") },
-    { label: "File", value: bytesText(model.bytes), hint: "All of the scene as it came." },
+    { label: "File", value: bytesText(model.bytes.file), hint: "All of the scene as it came." },
+    ...(wire
+      ? [{ label: "Light on the wire", value: bytesText(wire), hint: "What of it this source is." }]
+      : []),
     ...(shader
       ? [
           { label: "Light on GPU", value: bytesText(shader.cost.bytes) },
@@ -56,6 +60,23 @@ export function bytesText(bytes: number): string {
   if (bytes < 1000) return `${bytes} B`;
   const [value, unit] = bytes < 1e6 ? [bytes / 1e3, "kB"] : [bytes / 1e6, "MB"];
   return `${value.toFixed(value < 10 ? 1 : 0)} ${unit}`;
+}
+
+/** Bytes of a source as they came; 0 for none. */
+function wireBytes(model: Model, { name, kind }: LightSource): number {
+  const ofFile = model.fieldBytes.get(name);
+  const lighting = model.light.baked?.lighting;
+  if (ofFile !== undefined || !lighting) return ofFile ?? 0;
+  const { lightmap, directional, field, probes } = lighting;
+  const parts: Readonly<Record<LightSource["kind"], Lighting>> = {
+    lightmap: { ...(lightmap && { lightmap }) },
+    directional: { ...(directional && { directional }) },
+    field: { ...(field && { field }) },
+    probes: { ...(probes && { probes }) },
+    "three-probes": { ...(probes && { probes }) },
+    none: {},
+  };
+  return viewsOfLighting(parts[kind]).reduce((sum, view) => sum + (model.bytes.views[view] ?? 0), 0);
 }
 
 function parametersOf({ tensors }: Field): number {
