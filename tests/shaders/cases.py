@@ -54,6 +54,7 @@ class Case:
         expected: (Q, 3) E, or of a view its numbers.
         view: The view that is asked in place of the light.
         max_uniform_bytes: The device's; constants go to a texture where they are more.
+        max_size: The device's largest side of a texture; longer lists go on in further layers.
         everywhere: Whether GLSL and HLSL are asked on lavapipe too, not just WGSL there and GLSL in WebGL2.
     """
 
@@ -64,13 +65,14 @@ class Case:
     expected: np.ndarray
     view: str | None = None
     max_uniform_bytes: int | None = None
+    max_size: int | None = None
     everywhere: bool = True
 
     def job(self) -> dict[str, Any]:
         """For web/checks/shader-cases.ts."""
         job = {"name": self.name, "file": str(self.file), "source": self.source}
-        limit = self.max_uniform_bytes
-        return job if limit is None else job | {"maxUniformBytes": limit}
+        limits = {"maxUniformBytes": self.max_uniform_bytes, "maxSize": self.max_size}
+        return job | {name: limit for name, limit in limits.items() if limit is not None}
 
 
 @dataclass(frozen=True)

@@ -34,12 +34,14 @@ class RareField:
         bits: Of a value in its tables: codes, half floats or floats.
         block: Values that share a scale; 0 gives each level or plane one.
         direction: Encoding of the normal.
+        max_size: Of the device's textures, where that is less than usual; constants are uniforms then.
     """
 
     position: Encoding
     bits: int = 16
     block: int = 0
     direction: Encoding = IDENTITY
+    max_size: int | None = None
 
 
 RARE: dict[str, RareField] = {
@@ -58,6 +60,7 @@ RARE: dict[str, RareField] = {
     "fine-levels": RareField(
         HashGrid(n_levels=3, log2_table_size=12, base_resolution=16, max_resolution=4096)
     ),
+    "levels-in-several-layers": RareField(GRID, max_size=8),
     "blocks-of-entries": RareField(GRID, bits=8, block=16),
     "blocks-in-planes": RareField(TriPlane(4, 4), bits=4, block=32),
     "blocks-that-cut-entries": RareField(GRID, bits=8, block=7),
@@ -81,7 +84,9 @@ def rare_cases(folder: Path) -> Iterator[Case]:
         file.write_bytes(_encoded(rare))
         field = replace(decode_field(file.read_bytes()).field, backend_name="numpy")
         expected = field.irradiance(asked.position, asked.normal)
-        yield Case(name, file, "field", asked, np.float64(expected), max_uniform_bytes=0)
+        uniform_bytes = None if rare.max_size else 0
+        light = np.asarray(expected, np.float64)
+        yield Case(name, file, "field", asked, light, None, uniform_bytes, rare.max_size)
 
 
 def _encoded(rare: RareField) -> bytes:

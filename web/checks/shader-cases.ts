@@ -33,6 +33,8 @@ interface Job {
   readonly source: Source;
   /** Constants become a texture where they have more bytes than a device's uniform block takes. */
   readonly maxUniformBytes?: number;
+  /** Lists that are longer than so many rows go on in further layers. */
+  readonly maxSize?: number;
 }
 
 const HLSL_FOLDER = new URL("../../../shaders/hlsl/", import.meta.url);
@@ -96,11 +98,12 @@ function hlslOf(shader: LightShader, job: Job): string {
   return readFileSync(new URL("helpers.hlsl", HLSL_FOLDER), "utf8") + shader.text(HLSL);
 }
 
-function shaderOf({ name, file, source, maxUniformBytes }: Job): LightShader {
+function shaderOf({ name, file, source, maxUniformBytes, maxSize }: Job): LightShader {
   const bytes = new Uint8Array(readFileSync(file));
   const limits: TextureLimits = {
     ...WEBGL2_LIMITS,
     ...(maxUniformBytes !== undefined && { maxUniformBytes }),
+    ...(maxSize !== undefined && { maxSize }),
   };
   if (source === "field") return fieldShader(fieldOf(file, bytes), limits);
   const baked = readBakedGlb(bytes, options);
