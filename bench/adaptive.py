@@ -6,12 +6,14 @@
 Bakes with uniform and with adaptive sampling in turn, for the same seconds of tracing, undenoised, in
 one process that has compiled its kernels before. Errors are against two long uniform bakes with seeds of
 their own, whose noise is taken out (irradia.metrics.unbiased); the means of all texels show whether
-choosing by noise has shifted the light. Results go to ``bench/results/adaptive.md``.
+choosing by noise has shifted the light. References and comparisons are kept (out/bench), so that the
+benchmark can be stopped and taken up. Results go to ``bench/results/adaptive.md``.
 """
 
 from __future__ import annotations
 
 import argparse
+import functools
 import platform
 import shlex
 import sys
@@ -33,12 +35,14 @@ from irradia.metrics.unbiased import relmse_without_reference_noise
 from irradia.scene.layout import LightmapLayout
 from irradia.scene.types import Scene
 from support.bench_scene import load_bench_scene
+from support.kept import Kept
 
 RESULT = Path(__file__).parent / "results" / "adaptive.md"
 REFERENCE_SEEDS = (1001, 1002)
 MAX_MEAN_ERROR = 0.003
 
 Light = NDArray[np.float64]
+Values = dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -77,20 +81,39 @@ def main() -> None:
 def _measure(spec: str, arguments: argparse.Namespace) -> tuple[Errors, Errors, float]:
     """Errors of uniform and adaptive bakes, and how far apart the references' means are."""
     scene, layout = load_bench_scene(spec, arguments.resolution)
+    settings = {"scene": spec, "resolution": arguments.resolution, "references": arguments.reference_samples}
+    steps = Kept("adaptive", settings)
+
+    def reference(seed: int) -> dict[str, Light]:
+        options = BakeOptions(arguments.reference_samples, denoise=False, seed=seed)
+        return {"light": _light(_bake(scene, layout, options))}
+
     references = tuple(
-        _light(_bake(scene, layout, BakeOptions(arguments.reference_samples, denoise=False, seed=seed)))
+        steps.arrays(f"reference {seed}", functools.partial(reference, seed))["light"]
         for seed in REFERENCE_SEEDS
     )
+
+    def pair(repeat: int) -> list[Values]:
+        _compile(scene, layout)
+        both = (
+            BakeOptions(None, arguments.time, adaptive=a, seed=repeat, denoise=False) for a in (False, True)
+        )
+        return [_compare(_bake(scene, layout, options), references) for options in both]
+
     found = [Errors([], [], [], []), Errors([], [], [], [])]
-    _bake(scene, layout, BakeOptions(8, denoise=False, adaptive=True))  # compiles what only that needs
     for repeat in range(arguments.repeats):
-        for adaptive, errors in zip((False, True), found, strict=True):
-            options = BakeOptions(None, arguments.time, adaptive=adaptive, seed=repeat, denoise=False)
-            result = _bake(scene, layout, options)
-            _compare(errors, _light(result), references)
-            errors.samples.append(result.stats["samples_per_texel"])
+        values = steps.value(f"pair of {arguments.time} s, {repeat}", functools.partial(pair, repeat))
+        for errors, each in zip(found, values, strict=True):
+            for name, value in each.items():
+                getattr(errors, name).append(value)
     gap = float(references[0].mean() / references[1].mean() - 1.0)
     return found[0], found[1], gap
+
+
+def _compile(scene: Scene, layout: LightmapLayout) -> None:
+    """Compiles the kernels of both ways, so that neither pays for it in its time."""
+    for adaptive in (False, True):
+        _bake(scene, layout, BakeOptions(8, denoise=False, adaptive=adaptive))
 
 
 def _bake(scene: Scene, layout: LightmapLayout, options: BakeOptions) -> LightmapResult:
@@ -102,12 +125,15 @@ def _light(result: LightmapResult) -> Light:
     return result.irradiance_over_pi[result.valid].astype(np.float64)
 
 
-def _compare(errors: Errors, light: Light, references: tuple[Light, ...]) -> None:
-    first, second = references
-    truth = 0.5 * (first + second)
-    errors.mse.append(float(np.mean((light - first) * (light - second))))
-    errors.relmse.append(relmse_without_reference_noise(light, first, second))
-    errors.mean_ratio.append(float(light.mean() / truth.mean()))
+def _compare(result: LightmapResult, references: tuple[Light, ...]) -> Values:
+    """What :class:`Errors` lists of one bake."""
+    (first, second), light = references, _light(result)
+    return {
+        "samples": result.stats["samples_per_texel"],
+        "mse": float(np.mean((light - first) * (light - second))),
+        "relmse": relmse_without_reference_noise(light, first, second),
+        "mean_ratio": float(2.0 * light.mean() / (first + second).mean()),
+    }
 
 
 def _row(spec: str, uniform: Errors, adaptive: Errors, gap: float) -> str:

@@ -6,7 +6,8 @@
 Each bake is the command line in a fresh process, without a report. A short one before the clock starts
 fills the cache of unwraps and of compiled kernels, as on a user's second bake. Scenes that take longer
 than the limit to reach the noise are shown with the noise that they have by then. The table is written
-after each scene; thousands of objects need a larger page than the rest.
+after each scene and finished bakes are kept (out/bench), so that the benchmark can be stopped and taken up.
+Thousands of objects need a larger page than the rest.
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ sys.path.insert(0, str(Path(__file__).parent))
 from irradia.core.device import available_threads
 from irradia.core.files import write_text_atomic
 from irradia.scene.builtin import NAMES
-from support.bake_command import Run, facts, run_bake
+from support.bake_command import Run, facts, run_bake_once
+from support.kept import Kept
 
 RESULT = Path(__file__).parent / "results" / "builtin_scenes.md"
 LARGER_PAGE_PX = {"objects": 2048, "objects-merged": 2048}
@@ -34,11 +36,16 @@ def main() -> None:
     common = ["--threads", str(arguments.threads), "--no-report"]
     budget = ["--noise", str(arguments.noise), "--time", str(arguments.limit_s)]
     notes = facts("bench/builtin_scenes.py", arguments.threads)
+    steps = Kept("builtin_scenes", {"common": common, "budget": budget})
     rows: list[str] = []
     for name in arguments.scene:
         page = ["--resolution", str(max(arguments.resolution, LARGER_PAGE_PX.get(name, 0)))]
-        run_bake(f"builtin:{name}", *common, *page, "--samples", "1")
-        runs = [run_bake(f"builtin:{name}", *common, *page, *budget) for _ in range(arguments.repeats)]
+        scene, step = f"builtin:{name}", f"{name} at {page[1]}"
+        run_bake_once(steps, f"warm {step}", scene, *common, *page, "--samples", "1")
+        runs = [
+            run_bake_once(steps, f"{step} {i}", scene, *common, *page, *budget)
+            for i in range(arguments.repeats)
+        ]
         rows.append(_row(name, runs))
         print(rows[-1], file=sys.stderr)
         write_text_atomic(RESULT, "\n".join([*_head(arguments), *rows, "", *notes, ""]))
@@ -65,11 +72,16 @@ def _row(name: str, runs: Sequence[Run]) -> str:
     stats = middle["stats"]
     return (
         f"| {name} | {middle['lightmap']['n_texels']:,} | {stats['samples_per_texel']:.0f} "
-        f"| {stats['noise_p95']:.1%} "
+        f"| {_percent(stats['noise_p95'])} "
         f"| {_spread([run.result['bake_s'] for run in runs])} "
         f"| {_spread([run.result['stats']['tracing_seconds'] for run in runs])} "
         f"| {_spread([run.wall_s for run in runs])} |"
     )
+
+
+def _percent(share: float | None) -> str:
+    """A bake that ends before its pilot does knows no noise."""
+    return "unknown" if share is None else f"{share:.1%}"
 
 
 def _spread(seconds: Sequence[float]) -> str:

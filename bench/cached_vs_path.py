@@ -4,17 +4,19 @@
     python bench/cached_vs_path.py --scene builtin:atrium     one of them
 
 The cached gather bakes all texels. The path tracer, which is slower by an order of magnitude, traces a
-random choice of them. Two bakes of each method with seeds of their own let the noise of all four be
-taken out (irradia.metrics.relmse_between_means): what is left is the bias, known as well as its standard
-error says. Where that is near the limit, compare more texels. Texels that lie partly
-inside something are left out. Nothing is timed here.
+random choice of those that don't lie partly inside something. Two bakes of each method with seeds of their
+own let the noise of all four be taken out (irradia.metrics.relmse_between_means): what is left is the bias,
+known as well as its standard error says. Where that is near the limit, compare more texels. Nothing is
+timed here.
 
+Every bake is kept as soon as it is done (out/bench), so that the benchmark can be stopped and taken up.
 Results go to ``bench/results/cached_vs_path-SCENE.md`` and ``.svg``.
 """
 
 from __future__ import annotations
 
 import argparse
+import functools
 import sys
 import tempfile
 from dataclasses import dataclass
@@ -31,6 +33,7 @@ from irradia.core.provenance import source_commit
 from irradia.metrics import mean_ratio, relmse_between_means
 from support.bench_scene import load_bench_scene, save_bench_scene
 from support.irradia import bake_with_irradia, trace_reference
+from support.kept import Kept
 
 RESULTS = Path(__file__).parent / "results"
 PAGES_PX = {"builtin:cornell": 256, "builtin:foliage": 512, "builtin:atrium": 1024}
@@ -88,8 +91,8 @@ def _parse() -> argparse.Namespace:
     parser.add_argument("--scene", nargs="+", default=list(PAGES_PX))
     parser.add_argument("--resolution", type=int, help="page edge in texels; as suits the scene by default")
     parser.add_argument("--texels", type=int, default=4000, help="that are compared")
-    parser.add_argument("--samples", type=int, default=512, help="of the converged cached bakes")
-    parser.add_argument("--path-samples", type=int, default=8192, help="of the path-traced texels")
+    parser.add_argument("--samples", type=int, default=256, help="of the converged cached bakes")
+    parser.add_argument("--path-samples", type=int, default=4096, help="of the path-traced texels")
     parser.add_argument("--threads", type=int, default=available_threads())
     return parser.parse_args()
 
@@ -100,37 +103,51 @@ def _measure(spec: str, arguments: argparse.Namespace, kept: Path) -> Outcome:
     save_bench_scene(kept, scene, layout)
     mesh, texels = cover(scene, layout)
     n = len(texels.pixel)
-    chosen = np.sort(np.random.default_rng(1).choice(n, min(arguments.texels, n), replace=False))
+    steps = Kept("cached_vs_path", {"scene": spec, "resolution": resolution, "threads": arguments.threads})
 
-    paths, clear = [], np.ones(len(chosen), np.bool_)
-    for seed in PATH_SEEDS:
-        _say(f"{spec}: path, {arguments.path_samples} samples on {len(chosen)} texels")
-        values, clear = trace_reference(
-            kept, chosen, arguments.path_samples, seed=seed, threads=arguments.threads
-        )
-        paths.append(values.astype(np.float64)[clear])
-    pixel = texels.pixel[chosen[clear]]
+    def cached(samples: int, seed: int) -> dict[str, np.ndarray]:
+        def bake() -> dict[str, np.ndarray]:
+            _say(f"{spec}: cached, {samples} samples on {n} texels")
+            baked = bake_with_irradia(kept, samples, seed=seed, threads=arguments.threads)
+            return {"light": baked.pages.reshape(-1, 3)[texels.pixel], "clear": baked.clear}
 
-    def cached(samples: int, seed: int) -> np.ndarray:
-        _say(f"{spec}: cached, {samples} samples on {n} texels")
-        baked = bake_with_irradia(kept, samples, seed=seed, threads=arguments.threads)
-        return baked.pages.reshape(-1, 3)[pixel].astype(np.float64)
+        return steps.arrays(f"cached {samples} {seed}", bake)
 
-    truth = 0.5 * (paths[0] + paths[1])
     counts = [1 << k for k in range(2, 20, 2) if 1 << k < arguments.samples]
-    ratios = {count: mean_ratio(cached(count, CURVE_SEED), truth) for count in counts}
-    converged = [cached(arguments.samples, seed) for seed in CACHED_SEEDS]
+    clear = np.flatnonzero(cached(counts[0], CURVE_SEED)["clear"])
+    n_chosen = min(arguments.texels, len(clear))
+    chosen = np.sort(np.random.default_rng(1).choice(clear, n_chosen, replace=False))
+
+    def path(seed: int) -> dict[str, np.ndarray]:
+        _say(f"{spec}: path, {arguments.path_samples} samples on {n_chosen} texels")
+        light, _ = trace_reference(kept, chosen, arguments.path_samples, seed=seed, threads=arguments.threads)
+        return {"light": light}
+
+    paths = [
+        steps.arrays(f"path {arguments.path_samples} {n_chosen} {seed}", functools.partial(path, seed))[
+            "light"
+        ]
+        for seed in PATH_SEEDS
+    ]
+    paths = [light.astype(np.float64) for light in paths]
+    truth = 0.5 * (paths[0] + paths[1])
+
+    def at_chosen(samples: int, seed: int) -> np.ndarray:
+        return cached(samples, seed)["light"][chosen].astype(np.float64)
+
+    ratios = {count: mean_ratio(at_chosen(count, CURVE_SEED), truth) for count in counts}
+    converged = [at_chosen(arguments.samples, seed) for seed in CACHED_SEEDS]
     ratios[arguments.samples] = mean_ratio(0.5 * (converged[0] + converged[1]), truth)
     names = np.array([instance.name or f"instance {i}" for i, instance in enumerate(scene.instances)])
     return Outcome(
         scene=spec,
         resolution=resolution,
         n_texels=n,
-        n_compared=len(pixel),
+        n_compared=n_chosen,
         ratios=ratios,
         relmse=_bias(converged, paths),
         path_noise=float(np.mean((paths[0] - paths[1]) ** 2 / (truth**2 + 0.01 * truth.mean() ** 2)) / 4),
-        worst=_worst(names[mesh.instance[texels.triangle[chosen[clear]]]], converged, paths),
+        worst=_worst(names[mesh.instance[texels.triangle[chosen]]], converged, paths),
     )
 
 

@@ -3,7 +3,8 @@
     python bench/memory.py [--scene SCENE] [--resolution PX ...] [--samples 16] [--threads N]
 
 Each bake is the command line in a fresh process; its peak is the highest resident size that the system
-saw. The first bake, at the smallest size, is not counted: it fills the caches.
+saw. The first bake, at the smallest size, is not counted: it fills the caches. Finished bakes are kept
+(out/bench), so that the benchmark can be stopped and taken up.
 """
 
 from __future__ import annotations
@@ -16,10 +17,11 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 from irradia.core.device import available_threads
 from irradia.core.files import write_text_atomic
-from support.bake_command import Run, facts, run_bake
+from support.bake_command import Run, facts, run_bake_once
+from support.kept import Kept
 
 RESULT = Path(__file__).parent / "results" / "memory.md"
-_RESOLUTIONS_PX = (512, 1024, 2048, 4096)
+_RESOLUTIONS_PX = (1024, 2048, 4096)
 _MIB = 1 << 20
 
 
@@ -27,10 +29,12 @@ def main() -> None:
     """Bakes, prints and writes the table."""
     arguments = _parse()
     common = ["--samples", str(arguments.samples), "--no-report", "--threads", str(arguments.threads)]
-    run_bake(arguments.scene, *common, "--resolution", str(min(arguments.resolution)))
+    steps = Kept("memory", {"scene": arguments.scene, "common": common})
+    run_bake_once(steps, "first", arguments.scene, *common, "--resolution", str(min(arguments.resolution)))
     rows = []
     for resolution in arguments.resolution:
-        run = run_bake(arguments.scene, *common, "--resolution", str(resolution))
+        size = ["--resolution", str(resolution)]
+        run = run_bake_once(steps, f"at {resolution}", arguments.scene, *common, *size)
         rows.append(_row(resolution, run))
         print(rows[-1], file=sys.stderr)
     notes = facts("bench/memory.py", arguments.threads)

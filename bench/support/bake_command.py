@@ -9,11 +9,12 @@ import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from irradia.core.device import cpu_name
 from irradia.core.provenance import source_commit
+from support.kept import Kept
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,12 @@ def run_bake(scene: str, *options: str) -> Run:
     if done.returncode:
         sys.exit(f"{shlex.join(command)} ended with {done.returncode}")
     return Run(wall_s, json.loads(done.stdout))
+
+
+def run_bake_once(steps: Kept, step: str, scene: str, *options: str) -> Run:
+    """The same, unless an earlier run of the benchmark has kept it."""
+    kept = steps.value(step, lambda: asdict(run_bake(scene, *options)))
+    return Run(**kept)
 
 
 def facts(script: str, threads: int) -> list[str]:

@@ -20,12 +20,14 @@ class IrradiaBake:
 
     Attributes:
         pages: (P, H, W, 3) E/π as traced, row 0 at the top.
+        clear: (N,) which texels have no part inside something.
         bake_s: Wall time from scene and layout in memory to the finished map.
         setup_s: Wall time of starting and reading the scene.
         tracing_s: The part of ``bake_s`` that traced.
     """
 
     pages: np.ndarray
+    clear: np.ndarray
     bake_s: float
     setup_s: float
     tracing_s: float
@@ -66,6 +68,7 @@ def bake_with_irradia(
         with np.load(result) as file:
             return IrradiaBake(
                 pages=file["pages"],
+                clear=file["clear"],
                 bake_s=float(file["bake_s"]),
                 setup_s=float(file["setup_s"]),
                 tracing_s=float(file["tracing_s"]),

@@ -2,8 +2,9 @@
 
     python -m support.irradia_bake SCENE.pickle RESULT.npz --samples 64 ...
 
-RESULT.npz holds ``pages`` (P, H, W, 3), E/π as traced, and the same times: ``bake_s`` from scene and
-layout in memory to the finished map (texels, BVH, kernels, tracing), ``setup_s`` before that.
+RESULT.npz holds ``pages`` (P, H, W, 3), E/π as traced, ``clear`` (N,), which texels have no part inside
+something, and the same times: ``bake_s`` from scene and layout in memory to the finished map (texels, BVH,
+kernels, tracing), ``setup_s`` before that.
 """
 
 from __future__ import annotations
@@ -38,6 +39,7 @@ def main() -> None:
     np.savez(
         arguments.result,
         pages=result.raw_pages,
+        clear=result.hidden_share == 0.0,
         bake_s=bake_s,
         setup_s=setup_s,
         tracing_s=result.stats["tracing_seconds"],
