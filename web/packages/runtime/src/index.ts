@@ -38,11 +38,10 @@ export { readFieldBin } from "./formats/field-bin.js";
 export { type ReadFieldOptions, readField } from "./formats/field-safetensors.js";
 export { type LightTexture, readKtx2, type TexelEncoding, texelRgb } from "./formats/ktx2.js";
 export type { UnpackOptions, Unzstd } from "./formats/zstd.js";
+export { type ConstantsPlan, type LayerPlacement, PADDED_WIDTHS } from "./gpu/constants.js";
 export {
-  type ConstantsPlan,
   type EntryLayout,
   type FieldTextures,
-  type LayerPlacement,
   planFieldTextures,
   type TableBits,
   type TablePlacement,

@@ -3,9 +3,10 @@ import { type Field, tensorOf } from "../field/field.js";
 import { extentOf } from "../field/spec.js";
 import { bitsPerValue, codeAt, scaleAt, storedBytes, type Tensor, tensorValues } from "../field/tensor.js";
 import { product } from "../numbers.js";
+import { type ConstantsPlan, placeOf } from "./constants.js";
 import type { Vec4 } from "./encodings/encoding-shader.js";
 import { encodingShader } from "./encodings/registry.js";
-import { type ConstantsPlan, type FieldTextures, placeOf, type TableTexture } from "./field-textures.js";
+import type { FieldTextures, TableTexture } from "./field-textures.js";
 import { encodingLeaves } from "./leaves.js";
 import type { TexturePlan } from "./texture.js";
 

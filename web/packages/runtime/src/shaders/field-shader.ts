@@ -2,8 +2,9 @@
 import { expect } from "../errors.js";
 import type { Field } from "../field/field.js";
 import { layerShapes } from "../field/spec.js";
+import { paddedWidth, placeOf } from "../gpu/constants.js";
 import { encodingShader } from "../gpu/encodings/registry.js";
-import { type FieldTextures, paddedWidth, placeOf, planFieldTextures } from "../gpu/field-textures.js";
+import { type FieldTextures, planFieldTextures } from "../gpu/field-textures.js";
 import { type EncodingLeaf, encodingLeaves } from "../gpu/leaves.js";
 import { packField, wordsPerTexel } from "../gpu/pack.js";
 import type { TextureLimits } from "../gpu/texture.js";
