@@ -30,7 +30,7 @@ const bundle = await context({
   format: "esm",
   target: "es2022",
   plugins: [oneThree],
-  legalComments: "none",
+  legalComments: "eof",
   logLevel: "warning",
 });
 const styles = await context({

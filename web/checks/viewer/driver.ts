@@ -6,8 +6,8 @@ interface Viewer {
   readonly ready: Promise<void>;
   readonly state: { readonly value: Record<string, unknown>; set(patch: Record<string, unknown>): void };
   readonly status: {
-    readonly value: Record<string, unknown> & { readonly phase: string };
-    subscribe(listener: (now: { readonly phase: string }) => void): () => void;
+    readonly value: Readonly<Record<string, unknown>>;
+    subscribe(listener: (now: { readonly isOpening: boolean }) => void): () => void;
   };
   picture(): Promise<Blob>;
   settled(): Promise<void>;
@@ -94,14 +94,13 @@ async function dropped(addresses: string[]): Promise<void> {
   }
   let hasBegun = false;
   const done = new Promise<void>((resolve) => {
-    const end = irradiaViewer.status.subscribe(({ phase }) => {
-      hasBegun ||= phase === "loading";
-      if (!hasBegun || (phase === "loading" && !isOver())) return;
+    const end = irradiaViewer.status.subscribe(({ isOpening }) => {
+      hasBegun ||= isOpening;
+      if (!hasBegun || isOpening) return;
       end();
       resolve();
     });
   });
-  const isOver = (): boolean => irradiaViewer.status.value.message === "";
   const options = { dataTransfer: transfer, bubbles: true, cancelable: true };
   document.body.dispatchEvent(new DragEvent("dragenter", options));
   document.body.dispatchEvent(new DragEvent("drop", options));

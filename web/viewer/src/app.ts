@@ -28,6 +28,7 @@ export class App {
   #renderer: WebGPURenderer | undefined;
   #frame: Frame | undefined;
   #loop: Loop | undefined;
+  #pixelRatio = 1;
 
   constructor(
     readonly host: HTMLElement,
@@ -66,7 +67,11 @@ export class App {
     this.#resize();
     this.#loop = new Loop({
       renderer,
-      move: (seconds) => this.#director.move(seconds),
+      nFramesToSettle: this.options.kiosk ? 1 : 2,
+      move: (seconds) => {
+        if (this.#pixelRatio !== pixelRatio()) this.#resize();
+        return this.#director.move(seconds);
+      },
       draw: () => this.#director.draw(frame),
       measure: () => this.#director.measure(frame),
       onTime: (gpuMs, cpuMs) => this.#director.tell({ gpuMs, cpuMs }, [canvas.width, canvas.height]),
@@ -81,7 +86,8 @@ export class App {
 
   /** The picture on the canvas as PNG. */
   async picture(): Promise<Blob> {
-    if (this.#frame) this.#director.draw(this.#frame);
+    if (this.#frame && this.#loop?.isDrawn) this.#director.compose(this.#frame);
+    else if (this.#frame) this.#director.draw(this.#frame);
     const canvas = this.#renderer?.domElement as HTMLCanvasElement;
     return new Promise((resolve, reject) => {
       canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("no picture"))), "image/png");
@@ -140,23 +146,13 @@ export class App {
       this.#loop?.invalidate();
     });
     new ResizeObserver(() => this.#resize()).observe(this.host);
-    this.#watchPixelRatio();
-  }
-
-  /** Windows move between displays, and browsers zoom. */
-  #watchPixelRatio(): void {
-    const query = matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`);
-    const onChange = (): void => {
-      this.#resize();
-      this.#watchPixelRatio();
-    };
-    query.addEventListener("change", onChange, { once: true });
   }
 
   #resize(): void {
     const { clientWidth, clientHeight } = this.host;
     const [width, height] = [Math.max(clientWidth, 1), Math.max(clientHeight, 1)];
-    const ratio = Math.min(window.devicePixelRatio, MOST_PIXEL_RATIO);
+    const ratio = pixelRatio();
+    this.#pixelRatio = ratio;
     this.#renderer?.setPixelRatio(ratio);
     this.#renderer?.setSize(width, height, false);
     this.#frame?.setSize(Math.floor(width * ratio), Math.floor(height * ratio));
@@ -181,4 +177,9 @@ export class App {
     const { problems } = this.status.value;
     this.status.set({ problems: [...problems, problem], phase: "error", message: problem.finding });
   }
+}
+
+/** Of the display; another one when a window moves or a page is zoomed, of which nobody tells reliably. */
+function pixelRatio(): number {
+  return Math.min(window.devicePixelRatio, MOST_PIXEL_RATIO);
 }

@@ -82,9 +82,16 @@ export class Director {
     frame.draw(stage.scene, stage.camera, options);
   }
 
+  /** Draws again what was drawn last, without asking any source of light. */
+  compose(frame: Frame): void {
+    const options = this.#frameOptions();
+    if (options) frame.compose(options);
+  }
+
   /** What can be said of a picture at rest: its exposure, and how far its sides are apart. */
   async measure(frame: Frame): Promise<void> {
     const { status, onChange } = this.#options;
+    const { isOpening } = status.value;
     const ev = await this.#exposure(frame);
     if (Math.abs(ev - status.value.ev) > LEAST_EV) {
       status.set({ ev });
@@ -95,7 +102,7 @@ export class Director {
     const isPair = options && options.compare !== "single";
     status.set({ difference: isPair ? await frame.measure(options) : undefined });
     this.#keepPose();
-    if (status.value.phase === "loading") status.set({ phase: "ready", message: "" });
+    if (status.value.phase === "loading" && !isOpening) status.set({ phase: "ready", message: "" });
   }
 
   /** @param size of the canvas, pixels */

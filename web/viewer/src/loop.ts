@@ -7,6 +7,8 @@ const LONGEST_STEP_S = 0.1;
 
 export interface LoopOptions {
   readonly renderer: WebGPURenderer;
+  /** Frames after which what was asked for is on the canvas. */
+  readonly nFramesToSettle: number;
   /** @returns whether more is to come in the next frame */
   readonly move: (seconds: number) => boolean;
   readonly draw: () => void;
@@ -35,6 +37,11 @@ export class Loop {
     requestAnimationFrame((now) => this.#tick(now));
   }
 
+  /** Whether the picture on the canvas is what was last asked for. */
+  get isDrawn(): boolean {
+    return !this.#isDirty && this.#nDrawn > 0;
+  }
+
   /** Draws again at the next frame. */
   invalidate(): void {
     this.#isDirty = true;
@@ -42,10 +49,10 @@ export class Loop {
     this.#changedAt = performance.now();
   }
 
-  /** Resolves when two frames have been drawn from now on and the picture has been measured. */
+  /** Resolves when frames have been drawn from now on and the picture has been measured. */
   async settled(): Promise<void> {
     this.invalidate();
-    const until = this.#nDrawn + 2;
+    const until = this.#nDrawn + this.#options.nFramesToSettle;
     await new Promise<void>((resolve) => {
       const check = (): void => {
         if (this.#isStopped) resolve();

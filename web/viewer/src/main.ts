@@ -3,7 +3,7 @@ import { App } from "./app.js";
 import type { Manifest } from "./files/manifest.js";
 import { manifestOfPage } from "./files/page-manifest.js";
 import { problemOf } from "./files/problem.js";
-import type { ViewerState } from "./state/state.js";
+import { DEFAULTS, type ViewerState } from "./state/state.js";
 import { NO_STATUS } from "./state/status.js";
 import { Store } from "./state/store.js";
 import { readPageOptions, readState } from "./state/url.js";
@@ -11,7 +11,9 @@ import { buildPage } from "./ui/page.js";
 import { repeatInUrl } from "./ui/repeat.js";
 
 const options = readPageOptions(location.search);
-const state = new Store(readState(location.search, location.hash));
+// Kiosks are often drawn without a GPU, where evaluating light once a pixel saves most of the time.
+const defaults = options.kiosk ? { ...DEFAULTS, pass: "full" as const } : DEFAULTS;
+const state = new Store(readState(location.search, location.hash, defaults));
 const status = new Store(NO_STATUS);
 const host = document.createElement("div");
 host.className = "view";
@@ -21,7 +23,7 @@ repeatInUrl(state, status);
 
 const ready = start().catch((error: unknown) => {
   const problem = { ...problemOf(error, "the page"), title: "Can't start" };
-  status.set({ problems: [problem], phase: "error", message: problem.finding });
+  status.set({ problems: [problem], phase: "error", message: problem.finding, isOpening: false });
 });
 
 /** For scripts that drive the page. */
@@ -37,9 +39,12 @@ async function start(): Promise<void> {
   const { field, environment } = state.value;
   for (const url of [field, environment]) if (url !== "") await app.session.openUrl(url);
   if (options.pose !== undefined) app.lookFromPicture(options.pose);
+  app.session.finish();
   await app.settled();
   state.subscribe((now, before) => {
-    if (now.scene !== before.scene) void openScene(manifest);
+    if (now.scene === before.scene) return;
+    status.set({ isOpening: true });
+    void openScene(manifest).then(() => app.session.finish());
   });
 }
 

@@ -40,6 +40,12 @@ export class Session {
 
   /** Opens what was dropped together; problems are shown, not thrown. */
   async open(files: readonly NamedFile[]): Promise<void> {
+    this.#options.status.set({ isOpening: true });
+    await this.#openAll(files);
+    this.finish();
+  }
+
+  async #openAll(files: readonly NamedFile[]): Promise<void> {
     const scene = files.find((file) => kindOf(file) === "scene");
     const others = files.filter((file) => file !== scene);
     const isGltf = scene?.name.toLowerCase().endsWith(".gltf") ?? false;
@@ -48,15 +54,14 @@ export class Session {
     for (const file of others.filter((one) => !resources.includes(one))) {
       await this.#try(file.name, () => this.#openOther(file));
     }
-    this.#finish();
   }
 
-  /** Opens a manifest's scene with its fields and pictures. */
+  /** Opens a manifest's scene with its fields and pictures; more may follow until `finish`. */
   async openManifest(entry: ManifestScene): Promise<void> {
     await this.#try(entry.name, async () => {
       await this.#openScene({ name: fileName(entry.url), bytes: await this.fetch(entry.url) }, []);
     });
-    if (!this.#options.stage.model) return this.#finish();
+    if (!this.#options.stage.model) return;
     for (const [index, field] of entry.fields.entries()) {
       await this.#try(field.name, async () => {
         const bytes = await this.fetch(field.url);
@@ -64,15 +69,22 @@ export class Session {
       });
     }
     for (const picture of entry.references) await this.#try(picture.name, () => this.#openReference(picture));
-    this.#finish();
   }
 
-  /** Opens a file by its address. */
+  /** Opens a file by its address, likewise. */
   async openUrl(url: string): Promise<void> {
     await this.#try(fileName(url), async () => {
-      await this.open([{ name: fileName(url), bytes: await this.fetch(url) }]);
+      await this.#openAll([{ name: fileName(url), bytes: await this.fetch(url) }]);
     });
-    this.#finish();
+  }
+
+  /** Nothing more is to come for now. An old scene stays where a new one can't be read. */
+  finish(): void {
+    const { status, stage } = this.#options;
+    const { problems } = status.value;
+    const phase = problems.length > 0 ? "error" : stage.model ? "loading" : "empty";
+    const message = problems.at(-1)?.finding ?? "";
+    status.set({ phase, message, progress: undefined, isOpening: false });
   }
 
   async fetch(url: string): Promise<Uint8Array> {
@@ -90,14 +102,6 @@ export class Session {
       const problem = problemOf(error, name);
       status.set({ problems: [...status.value.problems, problem] });
     }
-  }
-
-  /** An old scene stays where a new one can't be read. */
-  #finish(): void {
-    const { status, stage } = this.#options;
-    const { problems } = status.value;
-    const phase = problems.length > 0 ? "error" : stage.model ? "loading" : "empty";
-    status.set({ phase, message: problems.at(-1)?.finding ?? "", progress: undefined });
   }
 
   async #openScene(file: NamedFile, resources: readonly NamedFile[]): Promise<void> {

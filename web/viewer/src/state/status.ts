@@ -11,6 +11,8 @@ export type Phase = "empty" | "loading" | "ready" | "error";
 
 export interface Status {
   readonly phase: Phase;
+  /** Whether files are still to come; no picture is ready before. */
+  readonly isOpening: boolean;
   /** What is being done, or what went wrong. */
   readonly message: string;
   /** 0 … 1 of a download; undefined where nobody knows. */
@@ -37,7 +39,8 @@ export interface Status {
 }
 
 export const NO_STATUS: Status = {
-  phase: "empty",
+  phase: "loading",
+  isOpening: true,
   message: "",
   progress: undefined,
   scenes: [],

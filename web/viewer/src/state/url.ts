@@ -68,10 +68,11 @@ const ALIASES: Readonly<Record<string, string>> = { source: "left", exposure: "e
  *
  * @param search of a location, with or without `?`
  * @param hash of a location, with or without `#`
+ * @param defaults what holds where neither says anything
  */
-export function readState(search: string, hash: string): ViewerState {
+export function readState(search: string, hash: string, defaults = DEFAULTS): ViewerState {
   const wanted = pairs(search, hash);
-  const state: Record<string, unknown> = { ...DEFAULTS };
+  const state: Record<string, unknown> = { ...defaults };
   for (const [name, [key, codec]] of Object.entries(CODECS)) {
     const text = wanted.get(key);
     const value = text === undefined ? undefined : (codec as Codec<unknown>).read(text);

@@ -50,6 +50,11 @@ export class Frame {
   draw(scene: Scene, camera: Camera, options: FrameOptions): void {
     this.#drawSide(0, options.left, scene, camera, options);
     if (options.compare !== "single") this.#drawSide(1, options.right, scene, camera, options);
+    this.compose(options);
+  }
+
+  /** The sides as they were last drawn, onto the canvas. */
+  compose(options: FrameOptions): void {
     this.#composite.draw(this.#renderer, compositeOptions(options));
   }
 
