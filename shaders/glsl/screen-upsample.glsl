@@ -2,11 +2,11 @@
 // needs: screen
 // given, in WGSL: var irradia_screen_half: texture_2d<f32>
 
-const float irradia_screen_reach = 4.0;
+const float irradia_screen_reach = 0.5;
 
-const float irradia_screen_bend = 10.0;
+const float irradia_screen_bend = 20.0;
 
-const float irradia_screen_least = 0.25;
+const float irradia_screen_least = 0.75;
 
 float irradia_screen_kinship(vec3 place, vec3 normal_1, float pixel_size, uvec2 neighbour) {
     irradia_screen_Surface _e4 = irradia_screen_seen(neighbour);

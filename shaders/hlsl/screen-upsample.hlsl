@@ -2,11 +2,11 @@
 // needs: screen
 // given, in WGSL: var irradia_screen_half: texture_2d<f32>
 
-static const float irradia_screen_reach = 4.0;
+static const float irradia_screen_reach = 0.5;
 
-static const float irradia_screen_bend = 10.0;
+static const float irradia_screen_bend = 20.0;
 
-static const float irradia_screen_least = 0.25;
+static const float irradia_screen_least = 0.75;
 
 float irradia_screen_kinship(float3 place, float3 normal_1, float pixel_size, uint2 neighbour)
 {

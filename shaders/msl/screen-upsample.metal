@@ -2,11 +2,11 @@
 // needs: screen
 // given, in WGSL: var irradia_screen_half: texture_2d<f32>
 
-static constant constexpr const float irradia_screen_reach = 4.0;
+static constant constexpr const float irradia_screen_reach = 0.5;
 
-static constant constexpr const float irradia_screen_bend = 10.0;
+static constant constexpr const float irradia_screen_bend = 20.0;
 
-static constant constexpr const float irradia_screen_least = 0.25;
+static constant constexpr const float irradia_screen_least = 0.75;
 
 float irradia_screen_kinship(
     metal::float3 place,

@@ -26,8 +26,8 @@ def test_at_half_resolution_smooth_light_stays_smooth_and_edges_sharp(
     """The room's walls meet at edges of light that a mean across them would shift by tens of steps."""
     drawn = draw("cornell", backend)
     steps = steps_apart(drawn.found(FIRST, f"{source} half"), drawn.expected(FIRST, source))
-    assert steps.mean() <= 0.25
-    assert steps.max() <= 8.0
+    assert steps.mean() <= 0.15
+    assert steps.max() <= 6.0
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
