@@ -77,7 +77,7 @@ def web_check(tmp_path_factory):
 
     def run(name: str, *arguments: Path | str) -> Any:
         command = [node, ROOT / "web" / "dist" / "checks" / f"{name}.js", *map(str, arguments)]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
         if done.returncode:
             pytest.fail(f"web check {name} failed:\n{done.stderr}")
         return json.loads(done.stdout)

@@ -15,16 +15,17 @@ SUBPIXEL = 1 / 16  # to which rasterisers may round vertices
 CORNELL = [("cornell", backend) for backend in BACKENDS]
 # The atrium takes long to draw without a GPU: there WebGPURenderer's second backend is left out.
 ATRIUM = [("atrium", "webgl"), ("atrium", "webgpu")]
-CASES = [(*pair, *source) for pair in (*CORNELL, *ATRIUM) for source in SOURCES]
-CASES += [(*pair, *source) for pair in CORNELL for source in WIDE]
+CASES = [(*pair, *source) for pair in CORNELL for source in (*SOURCES, *WIDE)]
+SLOW_CASES = [pytest.param(*pair, *source, marks=pytest.mark.slow) for pair in ATRIUM for source in SOURCES]
+PAIRS = [*CORNELL, *(pytest.param(*pair, marks=pytest.mark.slow) for pair in ATRIUM)]
 
 
-@pytest.mark.parametrize(("name", "backend"), [*CORNELL, *ATRIUM])
+@pytest.mark.parametrize(("name", "backend"), PAIRS)
 def test_the_renderer_draws_by_the_backend_asked_for(draw, name: str, backend: str) -> None:
     assert {answer.backend for answer in draw(name, backend).answers.values()} == {backend}
 
 
-@pytest.mark.parametrize(("name", "backend"), [*CORNELL, *ATRIUM])
+@pytest.mark.parametrize(("name", "backend"), PAIRS)
 def test_positions_lie_behind_their_pixels(draw, name: str, backend: str) -> None:
     camera, pixels = load_scene(f"builtin:{name}").cameras[0], draw(name, backend).pixels
     camera_from_world = np.linalg.inv(camera.world_from_camera)
@@ -38,7 +39,7 @@ def test_positions_lie_behind_their_pixels(draw, name: str, backend: str) -> Non
     assert np.quantile(np.maximum(across, along), 0.998) <= SUBPIXEL
 
 
-@pytest.mark.parametrize(("name", "backend", "light", "source"), CASES)
+@pytest.mark.parametrize(("name", "backend", "light", "source"), [*CASES, *SLOW_CASES])
 def test_pixels_are_those_of_the_reference(draw, name: str, backend: str, light: str, source: str) -> None:
     drawn = draw(name, backend)
     expected = drawn.expected(light, source)
