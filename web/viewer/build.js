@@ -4,7 +4,7 @@
  *
  *   node build.js [--out DIR] [--watch]
  */
-import { cpSync, mkdirSync } from "node:fs";
+import { cpSync, mkdirSync, readFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 import { parseArgs } from "node:util";
 import { context } from "esbuild";
@@ -21,6 +21,18 @@ const oneThree = {
     );
   },
 };
+/** Licences that stand in `//` comments, which bundlers drop, as comments that they keep. */
+const notices = {
+  name: "notices",
+  setup: (build) => {
+    build.onLoad({ filter: /(EXRLoader|meshopt_decoder\.module)\.js$/ }, ({ path }) => {
+      const text = readFileSync(path, "utf8");
+      const lines = text.split("\n", 90).filter((line) => line.startsWith("//"));
+      const notice = lines.map((line) => line.replace(/^[/ ]+/, "").replaceAll("*/", "")).join("\n");
+      return { contents: `/*!\n${notice}\n*/\n${text}`, loader: "js" };
+    });
+  },
+};
 const bundle = await context({
   absWorkingDir: here,
   entryPoints: { viewer: "src/main.ts" },
@@ -29,7 +41,7 @@ const bundle = await context({
   minify: true,
   format: "esm",
   target: "es2022",
-  plugins: [oneThree],
+  plugins: [oneThree, notices],
   legalComments: "eof",
   logLevel: "warning",
 });
