@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 
 import numpy as np
@@ -16,6 +17,7 @@ from irradia.core.progress import silent_progress
 from irradia.export.map_files import FORMATS, read_map
 from irradia.formats.ies import IesTable, encode_ies
 from irradia.formats.lightmap import read_lightmap
+from irradia.scene.gltf.accessors import Accessors
 from irradia.scene.gltf.read import read_document
 from irradia.scene.lightmap_uv.options import LayoutOptions
 
@@ -78,14 +80,27 @@ def test_a_mixed_light_has_its_shadow_in_the_mask_and_stays_on_its_node(everythi
 def test_the_baked_scene_holds_what_the_files_hold(everything):
     out, _ = everything
     lighting = read_document(out / "scene.baked.glb").json["extensions"]["IRRADIA_lighting"]
-    assert {"lightmap", "direct", "directional", "shadowMask", "probes"} <= set(lighting)
+    assert {"lightmap", "direct", "directional", "shadowMask", "validity", "probes"} <= set(lighting)
+
+
+def test_validity_inside_is_that_of_the_files(everything):
+    out, _ = everything
+    document = read_document(out / "scene.baked.glb")
+    (page,) = document.json["extensions"]["IRRADIA_lighting"]["validity"]["pages"]
+    with Image.open(io.BytesIO(bytes(Accessors(document).read_view(page["bufferView"])))) as image:
+        codes = np.asarray(image)
+    lightmap = read_lightmap(out / "lightmap.exr")
+    validity = lightmap.extra["validity"][0]
+    assert ((codes == 0) | (codes == 1 + np.round(254.0 * validity))).all()
+    assert (codes[lightmap.covered[0]] > 0).all()
+    assert 0.2 < (codes == 255).mean() < 0.95
 
 
 def test_info_lists_the_light_inside(everything, capfd):
     out, record = everything
     assert app.run(["info", str(out / "scene.baked.glb"), "--json"]) == 0
     parts = {part["name"]: part for part in json.loads(capfd.readouterr().out)["baked"]}
-    assert list(parts) == ["lightmap", "direct", "directional", "shadowMask", "probes"]
+    assert list(parts) == ["lightmap", "direct", "directional", "shadowMask", "validity", "probes"]
     assert "1 page of 32 × 32, rgb9e5" in parts["lightmap"]["text"]
     assert "sh, 4 maps" in parts["directional"]["text"]
     assert f"{record['probes']['count']}, grid" in parts["probes"]["text"]

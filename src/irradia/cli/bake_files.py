@@ -84,11 +84,13 @@ def _companions(baked: Baked) -> Companions:
     """What goes into the .glb beside the lightmap."""
     from irradia.export.glb import Companions
     from irradia.export.shadow_mask_extension import BakedShadows
+    from irradia.export.validity_extension import code_validity
 
     result = baked.result
     shadows = None if result.shadows is None else BakedShadows(result.shadows, result.shadow_channels)
     field = None if baked.neural_field is None else baked.neural_field.data
-    return Companions(result.directional, result.direct, shadows, baked.probes, field)
+    validity = result.texels.to_pages(code_validity(1.0 - result.hidden_share))
+    return Companions(result.directional, result.direct, shadows, baked.probes, field, validity)
 
 
 def _texel_channels(baked: Baked) -> dict[str, NDArray]:

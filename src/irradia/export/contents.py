@@ -42,6 +42,7 @@ def baked_parts(document: GltfDocument) -> tuple[BakedPart, ...]:
         "direct": lambda _: "first bounce of punctual lights, beside a field of indirect light",
         "directional": lambda part: f"{part.string('mode')}, {len(part.object('maps').value)} maps",
         "shadowMask": lambda part: _pages(part.length("pages")),
+        "validity": lambda part: _pages(part.length("pages")),
         "probes": _probes,
         "field": lambda part: f"{part.string('mode')}, {part.string('light')} light",
     }

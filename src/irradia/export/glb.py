@@ -29,6 +29,7 @@ from irradia.export.primitives import DRACO, MOZ_LIGHTMAP, PrimitiveWriter
 from irradia.export.probes_extension import add_probes
 from irradia.export.shadow_mask_extension import BakedShadows, add_shadow_mask, live_nodes
 from irradia.export.slots import Slots
+from irradia.export.validity_extension import add_validity
 from irradia.formats.ktx2 import Encoding
 from irradia.formats.probes import ProbeSet
 from irradia.scene.gltf.accessors import Accessors
@@ -50,6 +51,7 @@ class Companions:
         shadows: What arrives of the lights that shine live.
         probes: Light where nothing is baked.
         field: The file of a neural field.
+        validity: (P, H, W) of :func:`~irradia.export.validity_extension.code_validity`, 0 outside charts.
     """
 
     directional: DirectionalMaps | None = None
@@ -57,6 +59,7 @@ class Companions:
     shadows: BakedShadows | None = None
     probes: ProbeSet | None = None
     field: bytes | None = None
+    validity: NDArray[np.uint8] | None = None
 
 
 def write_baked_glb(
@@ -173,7 +176,8 @@ class _Export:
         used = {MOZ_LIGHTMAP} if self._materials.used else set()
         if self._bound:
             lighting_extension.move_baked_lights(self.json, live_nodes(self._scene.lights))
-            lighting_extension.add_lightmap(self.json, self._slots, self._pages, encoding)
+            light = lighting_extension.light_in_map(self._scene.lights)
+            lighting_extension.add_lightmap(self.json, self._slots, self._pages, encoding, light)
             self._add(companions, encoding)
             used.add(lighting_extension.NAME)
         return self._finish(used)
@@ -189,6 +193,8 @@ class _Export:
             add_probes(self.json, self._slots, companions.probes)
         if companions.field is not None:
             add_field(self.json, self._slots, companions.field)
+        if companions.validity is not None:
+            add_validity(self.json, self._slots, companions.validity)
 
     def run_without_light(self) -> bytes:
         """Like :meth:`run`, with the pages in materials alone and all lights on their nodes."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from irradia.formats.ktx2 import Encoding, encode_ktx2
 from irradia.formats.lightmap import QUANTITY, power_of_two_scale
 from irradia.scene.gltf.document import Json
 from irradia.scene.layout import LightmapLayout
+from irradia.scene.types import Light
 
 NAME = "IRRADIA_lighting"
 VERSION = 1
@@ -22,7 +24,18 @@ NO_PAGE = 0xFFFF
 _LIGHTS, _MEASURED_LIGHTS = "KHR_lights_punctual", "EXT_lights_ies"
 
 
-def add_lightmap(json: Json, slots: Slots, pages: NDArray[np.float32], encoding: Encoding) -> None:
+def light_in_map(lights: Sequence[Light]) -> Literal["full", "indirect"]:
+    """Which light a map holds by the modes of the lights that it was baked with."""
+    return "indirect" if any(light.mode in ("mixed", "realtime") for light in lights) else "full"
+
+
+def add_lightmap(
+    json: Json,
+    slots: Slots,
+    pages: NDArray[np.float32],
+    encoding: Encoding,
+    light: Literal["full", "indirect"] = "full",
+) -> None:
     """Adds the map to the document's root.
 
     Args:
@@ -30,10 +43,12 @@ def add_lightmap(json: Json, slots: Slots, pages: NDArray[np.float32], encoding:
         slots: Where the texture's bytes go.
         pages: (P, H, W, 3) E/π.
         encoding: Of the texture's texels.
+        light: ``indirect`` where first bounces of live lights are left out.
     """
     scale, exposure_ev = _brightness(pages)
     lightmap: Json = {
         "quantity": QUANTITY,
+        "light": light,
         "mimeType": "image/ktx2",
         "bufferView": -1,
         "encoding": encoding,
