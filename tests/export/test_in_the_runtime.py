@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import io
 import json
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from irradia.bake.directional import DirectionalMaps
 from irradia.bake.directional_modes import MODES
@@ -88,6 +90,20 @@ def test_rectangles_of_every_instance(read_in_node, gallery, bake):
         checked += 1
     assert checked > 5
     assert len(nodes[str(NODE_OF_INSTANCES)]["primitives"][0]["rectangles"]) == 3
+
+
+def test_validity_and_the_light_of_the_map(read_in_node, gallery, bake, tmp_path):
+    plain = bake(gallery)
+    pages = np.random.default_rng(9).integers(0, 256, plain.pages.shape[:3]).astype(np.uint8)
+    lamps = tuple(replace(lamp, mode="realtime") for lamp in plain.scene.lights)
+    path = tmp_path / "validity.glb"
+    scene = replace(plain.scene, lights=lamps)
+    path.write_bytes(baked_glb(scene, plain.layout, plain.pages, Companions(validity=pages)))
+    found = read_in_node(path)
+    assert found["light"] == "indirect"
+    for data, page in zip(found["validity"], pages, strict=True):
+        with Image.open(io.BytesIO(bytes(data))) as image:
+            np.testing.assert_array_equal(np.asarray(image), page)
 
 
 @pytest.mark.parametrize("structure", ["grid", "octree", None])

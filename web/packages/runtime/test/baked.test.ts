@@ -68,6 +68,27 @@ test("primitives come back with their rectangles, instances with theirs", () => 
   assert.equal(nodes.has(3), false);
 });
 
+test("every page has its image of validity", () => {
+  assert.deepEqual(
+    baked().validity?.map((png) => [...png]),
+    [[0], [1]],
+  );
+});
+
+test("a lightmap holds the light that it says, and all where it says nothing", () => {
+  const lights = [undefined, "full", "indirect"].map((light) => {
+    const found = baked((g) => {
+      lightingOf(g).lightmap.light = light;
+    });
+    return [found.lighting.lightmap?.light, directionalShader(found, WEBGL2_LIMITS).quantity];
+  });
+  assert.deepEqual(lights, [
+    ["full", "full"],
+    ["full", "full"],
+    ["indirect", "indirect"],
+  ]);
+});
+
 test("the field inside gives light", () => {
   const { field } = baked();
   const light = new FieldEvaluator(field ?? assert.fail()).irradiance([0, 1, 2], [0, 1, 0]);
@@ -183,6 +204,24 @@ test("what is wrong is named with its place", () => {
     ],
     [
       (g) => {
+        lightingOf(g).validity.pages.pop();
+      },
+      /validity: expected 2 pages, found 1/,
+    ],
+    [
+      (g) => {
+        lightingOf(g).validity.pages[0].mimeType = "image/webp";
+      },
+      /validity\/pages\/0\/mimeType/,
+    ],
+    [
+      (g) => {
+        lightingOf(g).lightmap.light = "direct";
+      },
+      /lightmap\/light/,
+    ],
+    [
+      (g) => {
         lightingOf(g).probes.count = 7;
       },
       /expected 378 bytes, found 324/,
@@ -261,7 +300,7 @@ test("what is wrong is named with its place", () => {
 function summary(bytes: Uint8Array): unknown {
   const light = readBakedGlb(bytes);
   if (!light) return null;
-  const { lightmap, direct, directional, probes, field, nodes, shadowMask } = light;
+  const { lightmap, direct, directional, probes, field, nodes, shadowMask, validity } = light;
   const texels = [lightmap, direct, ...(directional?.values() ?? [])].map((map) => map && [...map.texels]);
   const arrays = Object.values(probes ?? {}).map((value) =>
     ArrayBuffer.isView(value) ? [...(value as Uint8Array)] : value,
@@ -273,7 +312,8 @@ function summary(bytes: Uint8Array): unknown {
     probes?.structure && probeShader(probes, limits).cost,
   ];
   const e = field && new FieldEvaluator(field).irradiance([0, 1, 2], [0, 1, 0]);
-  return [texels, arrays, costs, e, [...nodes], shadowMask?.map((png) => [...png])];
+  const images = [...(shadowMask ?? []), ...(validity ?? [])].map((png) => [...png]);
+  return [texels, arrays, costs, e, [...nodes], images];
 }
 
 test("a .glb survives random bytes", () => {

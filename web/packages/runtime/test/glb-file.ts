@@ -65,6 +65,9 @@ function lighting(binary: Binary): object {
     direct: map("half"),
     directional: { mode: "mono-sh", maps: { sh_l0: map("rgb9e5"), sh_direction: map("half") } },
     shadowMask: { pages: [0, 1].map(() => ({ mimeType: "image/png", ...binary.add(png) })) },
+    validity: {
+      pages: [0, 1].map((page) => ({ mimeType: "image/png", ...binary.add(Uint8Array.of(page)) })),
+    },
     probes: probes(binary),
     field: {
       mimeType: "application/vnd.safetensors",

@@ -20,7 +20,7 @@ const [scene, questions] = process.argv.slice(2);
 if (!scene) throw new Error("usage: print-baked.js SCENE.glb [QUESTIONS.json]");
 const baked = readBakedGlb(new Uint8Array(readFileSync(scene)), { unzstd: await decoder() });
 if (!baked) throw new Error(`${scene} has no light`);
-const { lighting, lightmap, directional, probes, field, nodes, shadowMask } = baked;
+const { lighting, lightmap, directional, probes, field, nodes, shadowMask, validity } = baked;
 
 const pages = (map: LightTexture, scale: number): number[] => {
   const { width, height, layers } = map;
@@ -36,6 +36,7 @@ const { positions = [], normals = [] }: { positions?: Vec3[]; normals?: Vec3[] }
 const light = field && new FieldEvaluator(field);
 process.stdout.write(
   JSON.stringify({
+    light: lighting.lightmap?.light,
     lightmap: lightmap && pages(lightmap, lighting.lightmap?.scale ?? Number.NaN),
     directional: Object.fromEntries(
       [...(directional ?? [])].map(([name, map]) => {
@@ -43,6 +44,7 @@ process.stdout.write(
       }),
     ),
     shadowMask: shadowMask?.map((png) => [...png]),
+    validity: validity?.map((png) => [...png]),
     nodes: Object.fromEntries(nodes),
     probes: probes && {
       coefficients: Array.from({ length: probes.count }, (_, i) => [...probeCoefficients(probes, i)]),

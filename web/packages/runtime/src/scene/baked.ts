@@ -32,6 +32,8 @@ export interface BakedLight {
   readonly directional?: ReadonlyMap<string, LightTexture>;
   /** PNG files, one a page. */
   readonly shadowMask?: readonly Uint8Array[];
+  /** PNG files, one a page: 0 outside charts, else 1 + 254 times the texel's validity. */
+  readonly validity?: readonly Uint8Array[];
   readonly probes?: Probes;
   readonly field?: Field;
   /** By index; only those of which the extension says something. */
@@ -52,7 +54,7 @@ export function readBakedGlb(bytes: Uint8Array, options: ReadBakedOptions = {}):
 export function readBaked(file: GltfFile, options: UnpackOptions = {}): BakedLight | undefined {
   const lighting = readLighting(file.json);
   if (!lighting) return undefined;
-  const { lightmap, direct, directional, shadowMask, probes, field } = lighting;
+  const { lightmap, direct, directional, shadowMask, validity, probes, field } = lighting;
   const views = file.views;
   return {
     lighting,
@@ -60,6 +62,7 @@ export function readBaked(file: GltfFile, options: UnpackOptions = {}): BakedLig
     ...(lightmap && direct && { direct: readMap(direct, lightmap, views, options) }),
     ...(lightmap && directional && { directional: readMaps(directional.maps, lightmap, views, options) }),
     ...(shadowMask && { shadowMask: shadowMask.map((view) => views(view, "shadow mask")) }),
+    ...(validity && { validity: validity.map((view) => views(view, "validity")) }),
     ...(probes && { probes: readProbes(probes, views) }),
     ...(field && { field: readFieldOf(field, views, options) }),
     nodes: readNodes(file, lightmap),

@@ -27,6 +27,8 @@ export interface MapEntry {
 
 /** The lightmap: texels times `scale` are E/π, linear Rec.709. */
 export interface LightmapEntry extends MapEntry {
+  /** `indirect`: first bounces of lights that shine live are left out. */
+  readonly light: Quantity;
   /** Stops: the light times 2^exposure shows well on a display. */
   readonly exposure: number;
   readonly width: number;
@@ -69,6 +71,8 @@ export interface Lighting {
   readonly directional?: DirectionalEntry;
   /** Buffer views of PNG images, one a page; docs/shadow_mask.md. */
   readonly shadowMask?: readonly number[];
+  /** The same of the texels' validity, which debug views show. */
+  readonly validity?: readonly number[];
   /** Its JSON; `readProbes` decodes it. */
   readonly probes?: JsonView;
   readonly field?: FieldEntry;
@@ -87,13 +91,14 @@ export function readLighting(document: JsonView): Lighting | undefined {
   extension.integer("version", VERSION, VERSION);
   const [lightmap, directional] = [extension.optional("lightmap"), extension.optional("directional")];
   const direct = extension.optional("direct");
-  const [mask, probes] = [extension.optional("shadowMask"), extension.optional("probes")];
-  const field = extension.optional("field");
+  const [mask, validity] = [extension.optional("shadowMask"), extension.optional("validity")];
+  const [probes, field] = [extension.optional("probes"), extension.optional("field")];
   return {
     ...(lightmap && { lightmap: readLightmapEntry(lightmap) }),
     ...(direct && lightmap && { direct: readMapEntry(direct) }),
     ...(directional && lightmap && { directional: readDirectionalEntry(directional) }),
-    ...(mask && lightmap && { shadowMask: readShadowMask(mask, lightmap) }),
+    ...(mask && lightmap && { shadowMask: readImages(mask, lightmap) }),
+    ...(validity && lightmap && { validity: readImages(validity, lightmap) }),
     ...(probes && { probes }),
     ...(field && { field: readFieldEntry(field) }),
   };
@@ -101,9 +106,9 @@ export function readLighting(document: JsonView): Lighting | undefined {
 
 /** All buffer views of a document's light, for loaders that fetch them one by one; those of nodes aside. */
 export function viewsOfLighting(lighting: Lighting): number[] {
-  const { lightmap, direct, directional, shadowMask = [], probes, field } = lighting;
+  const { lightmap, direct, directional, shadowMask = [], validity = [], probes, field } = lighting;
   const maps = [lightmap, direct, field, ...(directional?.maps.values() ?? [])];
-  const views = [...maps.flatMap((entry) => entry?.bufferView ?? []), ...shadowMask];
+  const views = [...maps.flatMap((entry) => entry?.bufferView ?? []), ...shadowMask, ...validity];
   for (const entry of [probes, probes?.optional("octree")]) {
     for (const key of entry?.keys ?? []) {
       const value = entry?.get(key);
@@ -140,6 +145,7 @@ function readLightmapEntry(entry: JsonView): LightmapEntry {
   entry.choice("mimeType", ["image/ktx2"]);
   return {
     ...readMapEntry(entry),
+    light: entry.choice("light", QUANTITIES, "full"),
     exposure: entry.number("exposure", 0),
     width: entry.integer("width", 1, 32768),
     height: entry.integer("height", 1, 32768),
@@ -156,13 +162,14 @@ function readDirectionalEntry(entry: JsonView): DirectionalEntry {
   };
 }
 
-function readShadowMask(mask: JsonView, lightmap: JsonView): number[] {
-  const pages = mask.objects("pages").map((page) => {
+/** Buffer views of an image for each page of the lightmap. */
+function readImages(entry: JsonView, lightmap: JsonView): number[] {
+  const pages = entry.objects("pages").map((page) => {
     page.choice("mimeType", ["image/png"]);
     return viewOf(page);
   });
   const wanted = lightmap.integer("pages", 1, 2048);
-  expect(pages.length === wanted, `expected ${wanted} pages, found ${pages.length}`, mask.pointer);
+  expect(pages.length === wanted, `expected ${wanted} pages, found ${pages.length}`, entry.pointer);
   return pages;
 }
 

@@ -64,7 +64,7 @@ export function directionalShader(baked: BakedLight, limits: TextureLimits): Lig
     uniforms: [
       { name: "irradia_map_scales", values: Float32Array.from({ length: 4 }, (_, i) => scales[i] ?? 0) },
     ],
-    quantity: "full",
+    quantity: baked.lighting.lightmap?.light ?? "full",
     cost: { flops, fetches: textures.length, bytes: bytesOf(textures, 1) },
     views: {},
     text: (language) => composeText(language, [`directional-${entry.mode}-light`]),
