@@ -14,6 +14,8 @@ declare global {
   }
 }
 
+const MAX_DIFFERENCE = 0.01; // of the picture's sum
+
 interface Stand {
   readonly timing: Timing;
   readonly pass: ScreenPass | undefined;
@@ -30,7 +32,7 @@ window.cost = async (request) => {
       pass: drawer.newPass(light, how),
     }));
   });
-  for (const stand of stands) await draw(drawer, light, stand, scene, camera); // compiles
+  await checkAgreement(drawer, light, stands, scene, camera); // compiles, too
   for (let round = 0; round < request.rounds; round++) {
     for (const stand of stands) {
       stand.timing.milliseconds.push(await draw(drawer, light, stand, scene, camera));
@@ -49,6 +51,32 @@ async function load(drawer: Drawer, request: CostRequest): Promise<{ scene: Scen
   return { scene: new Scene().add(gltf.scene), light };
 }
 
+/** Refuses to time what doesn't show the same: passes at full resolution against materials. */
+async function checkAgreement(
+  drawer: Drawer,
+  light: SceneLight,
+  stands: readonly Stand[],
+  scene: Scene,
+  camera: Camera,
+): Promise<void> {
+  let inline: Float32Array = new Float32Array();
+  for (const { timing, pass } of stands) {
+    choose(light, timing.source, pass);
+    const picture = await drawer.draw(scene, camera, pass);
+    if (timing.how === "inline") inline = picture;
+    const difference = inline.reduce((sum, value, i) => sum + Math.abs(value - (picture[i] ?? 0)), 0);
+    const share = difference / inline.reduce((sum, value) => sum + value, 0);
+    if (timing.how === "full" && !(share < MAX_DIFFERENCE)) {
+      throw new Error(`${timing.source}: a pass shows something else than materials: ${share}`);
+    }
+  }
+}
+
+function choose(light: SceneLight, source: string, pass: ScreenPass | undefined): void {
+  light.use(source);
+  if (!pass) light.screen = null;
+}
+
 /** Milliseconds until a frame is done. */
 async function draw(
   drawer: Drawer,
@@ -57,8 +85,7 @@ async function draw(
   scene: Scene,
   camera: Camera,
 ): Promise<number> {
-  light.use(timing.source);
-  if (!pass) light.screen = null;
+  choose(light, timing.source, pass);
   await drawer.finish();
   const start = performance.now();
   drawer.show(scene, camera, pass);
