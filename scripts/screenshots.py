@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import argparse
 import io
+import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Thread
 
@@ -29,12 +31,28 @@ SIZE_PX = (1280, 720)
 MAX_BYTES = 300_000
 TIMEOUT_S = 900.0
 
-# Name: what the viewer is asked to show.
+
+@dataclass(frozen=True)
+class Shot:
+    """What a picture shows.
+
+    Attributes:
+        address: What the viewer opens with.
+        then: What is changed once that is on show, as its state names it.
+    """
+
+    address: str
+    then: Mapping[str, str] = field(default_factory=dict)
+
+
+# One side first: the other isn't there before all files are read.
 SHOTS = {
-    "split": "left=lightmap&right=reference&compare=split&pose=0",
-    "error": "pass=full&left=field&right=reference&compare=error&pose=0",
-    "texels": "left=lightmap&view=uv&pose=0",
+    "split": Shot("pose=0&left=lightmap", {"right": "reference", "compare": "split"}),
+    "error": Shot("pose=0&left=lightmap", {"right": "reference", "compare": "error"}),
+    "field": Shot("pose=0&left=field&pass=full"),
+    "texels": Shot("pose=0&left=lightmap&view=uv"),
 }
+_SETTLED = "irradiaViewer.state.set(%s); irradiaViewer.settled().then(() => true)"
 
 
 def main() -> int:
@@ -48,12 +66,19 @@ def main() -> int:
         with served(asked.demo) as url:
             for name in asked.only or SHOTS:
                 with open_page(*SIZE_PX, gpu=asked.gpu) as page:
-                    show(page, f"{url}?renderer=webgl2&{SHOTS[name]}", TIMEOUT_S)
+                    take(page, url, SHOTS[name])
                     print(f"{name}: {save(name, page):,} bytes", flush=True)
     except IrradiaError as error:
         print(f"screenshots: {error}", file=sys.stderr)
         return 1
     return 0
+
+
+def take(page: Page, url: str, shot: Shot) -> None:
+    """Puts it on show."""
+    show(page, f"{url}?renderer=webgl2&{shot.address}", TIMEOUT_S)
+    if shot.then:
+        page.evaluate(_SETTLED % json.dumps(shot.then), TIMEOUT_S)
 
 
 @contextmanager
