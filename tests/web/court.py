@@ -25,11 +25,17 @@ from .made_light import FIELDS, N_PAGES, PAGE_PX, bounds, made_field, made_grid,
 CUBES_M = ((-0.8, 0.25, 0.0), (0.0, 0.25, -0.6), (0.8, 0.25, 0.0))
 TORCHES_M = {"point": (-1.0, 1.0, 0.5), "spot": (1.0, 1.5, 0.5), "directional": (0.3, 1.0, 0.6)}
 MASK_CHANNELS, MASK_SHARES = (3, 0, 1), (0.2, 0.8)  # channels by torch, shares by page
+VALIDITIES = ((0, 255), (1, 128))  # codes by page
 PANE_M = np.array([(0.4, 0.0, 0.5), (1.0, 0.0, 0.5), (1.0, 0.5, 0.5), (0.4, 0.5, 0.5)])
 
 
 def write_court(
-    path: Path, *, instanced: bool = False, torch: LightMode = "baked", direct: bool = False
+    path: Path,
+    *,
+    instanced: bool = False,
+    torch: LightMode = "baked",
+    direct: bool = False,
+    sun: LightMode | None = None,
 ) -> None:
     """The court in light that was made up, with a field of indirect light and probes.
 
@@ -38,8 +44,11 @@ def write_court(
         instanced: The cubes come by EXT_mesh_gpu_instancing, not as nodes; nothing else differs.
         torch: Mode of its lights but for the first, which is baked.
         direct: With a map of direct light.
+        sun: Mode of a light without a node, as the sky's; None is no sun.
     """
     scene = court(instanced, torch)
+    if sun is not None:
+        scene = replace(scene, lights=(*scene.lights, Light("directional", (1.0, 1.0, 1.0), mode=sun)))
     field = decode_field(made_field(FIELDS["identity"], bounds(scene))).field
     indirect = replace(field, frame=replace(field.frame, quantity="indirect"))
     masked = BakedShadows(made_mask(), (None, *MASK_CHANNELS)) if torch == "mixed" else None
@@ -48,6 +57,7 @@ def write_court(
         direct=made_pages(Seed(6), 0.2, 0.6) if direct else None,
         probes=made_grid(*bounds(scene)),
         field=encode_field(indirect),
+        validity=made_validity(),
     )
     write_baked_glb(path, scene, made_layout(scene), made_pages(Seed(4), 0.5, 1.5), companions)
 
@@ -57,6 +67,13 @@ def made_mask() -> NDArray[np.float32]:
     pages = np.zeros((N_PAGES, PAGE_PX, PAGE_PX, 4), np.float32)
     pages[..., MASK_CHANNELS] = np.reshape(MASK_SHARES, (N_PAGES, 1, 1, 1))
     return pages
+
+
+def made_validity() -> NDArray[np.uint8]:
+    """(P, H, W) codes that change from texel to texel, each page with two of its own."""
+    rng = Seed(8).numpy()
+    choices = rng.integers(0, 2, (N_PAGES, PAGE_PX, PAGE_PX))
+    return np.stack([np.take(np.uint8(codes), page) for codes, page in zip(VALIDITIES, choices, strict=True)])
 
 
 def court(instanced: bool, torch: LightMode) -> Scene:

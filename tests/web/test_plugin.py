@@ -15,17 +15,21 @@ from numpy.typing import NDArray
 from irradia.scene.builtin.mesh import look_at
 from irradia.scene.types import Camera
 
-from .court import MASK_SHARES, PANE_M, court, write_court
+from .court import MASK_SHARES, PANE_M, VALIDITIES, court, made_validity, write_court
+from .made_light import PAGE_PX
 from .pixels import BACKENDS, view_of
 
 WIDTH_PX, HEIGHT_PX = 96, 64
 CLOSE = 1e-5  # sums and products in another order
+MAGENTA = (1.0, 0.0, 1.0)
+OUTSIDE, HIDDEN, WHOLE = np.array([(0.08, 0.13, 0.24), (0.75, 0.03, 0.02), (0.38, 0.48, 0.4)])
 FILES: dict[str, dict[str, Any]] = {
     "plain": {},
     "instanced": {"instanced": True},
     "live": {"torch": "realtime"},
     "masked": {"torch": "mixed"},
     "direct": {"direct": True},
+    "sunless": {"sun": "realtime"},
 }
 BALL = {"centre": [0.0, 0.9, 0.4], "radius": 0.3, "isLit": True}  # against the void
 # By name: file, plugins, and by name the steps before each picture.
@@ -80,6 +84,17 @@ JOBS: dict[str, tuple[str, str, dict[str, dict[str, Any]]]] = {
         "irradia",
         {"normal": {"view": "normal"}, "irradiance": {"view": "irradiance", "use": "probes"}},
     ),
+    "validity": (
+        "plain",
+        "irradia",
+        {
+            "lightmap": {"view": "validity"},
+            "normal": {"view": "normal"},
+            "uv": {"view": "lightmap-uv"},
+            "field": {"view": "validity", "use": "field"},
+        },
+    ),
+    "sunless": ("sunless", "irradia", {"lightmap": {}}),
     "damaged": ("damaged", "irradia", {}),
 }
 BELOW = Camera(look_at((0.0, -2.0, 0.1), (0.0, 0.0, 0.0)), yfov_rad=0.5, name="below")
@@ -267,6 +282,43 @@ def test_what_moves_is_lit_by_the_dynamic_source(shots) -> None:
     assert by_probes[ball].min() > 0.05
     assert np.abs(lit - by_probes)[ball].max() > 0.01
     assert unlit[ball].max() == 0.0
+
+
+def test_texels_show_their_own_validity_unmixed(shots) -> None:
+    seen, normal, uv = (shots["validity"][name].pixels for name in ("lightmap", "normal", "uv"))
+    floor = matte(shots["plain"]["albedo"])
+    place = PAGE_PX * uv[floor][:, :2] / (2.0 * uv[floor][:, 2:])  # undoes the checker
+    column, row = np.floor(place).astype(int).T
+    inside = (np.abs(place - np.round(place)) > 0.01).all(axis=1)
+    expected = validity_colour(made_validity()[0, row, column], normal[floor][:, 1])
+    np.testing.assert_allclose(seen[floor][inside], expected[inside], atol=1e-3)
+    assert inside.sum() > 1000
+
+    cubes = opaque() & ~floor & (normal.max(axis=-1) > 0.0)
+    codes = np.array(VALIDITIES).ravel()
+    colours = validity_colour(codes[:, None], normal[cubes][:, 1])
+    nearest = np.abs(colours - seen[cubes]).max(axis=-1)
+    assert nearest.min(axis=0).max() < 1e-3
+    assert np.bincount(nearest.argmin(axis=0), minlength=len(codes)).min() > 10
+
+
+def validity_colour(codes: NDArray, height: NDArray) -> NDArray:
+    """What the view shows of codes, by the green of the view of normals."""
+    share = (codes[..., None] - 1.0) / 254.0
+    colour = np.where(codes[..., None] == 0, OUTSIDE, HIDDEN + (WHOLE - HIDDEN) * share)
+    return colour * (0.6 + 0.4 * height[..., None])
+
+
+def test_a_source_without_validity_shows_that_it_lacks_it(shots) -> None:
+    field = shots["validity"]["field"].pixels[matte(shots["plain"]["albedo"])]
+    np.testing.assert_allclose(field, np.broadcast_to(MAGENTA, field.shape), atol=CLOSE)
+
+
+def test_a_lightmap_without_its_sun_says_so(reports, shots) -> None:
+    quantities = {source["name"]: source["quantity"] for source in reports["sunless"]["sources"]}
+    assert quantities["lightmap"] == "indirect"
+    told = shots["sunless"]["lightmap"].told
+    assert (told["directFrom"], any(told["shining"])) == ("none", False)
 
 
 def test_disposing_of_the_light_leaves_the_scene_as_it_came(shots) -> None:

@@ -1,4 +1,4 @@
-"""The shadow masks that @irradia/three unpacks are the images that were packed."""
+"""The images that @irradia/three unpacks are those that were packed."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from PIL import Image
 
 WIDTH, HEIGHT = 23, 17
 FILTERS = range(5)
+KINDS = {4: 6, 1: 0}  # PNG's colour types of RGBA and grey
 
 
 @pytest.fixture(scope="module")
@@ -29,14 +30,14 @@ def png(texels: NDArray[np.uint8], filters: list[int]) -> bytes:
     """An image whose row y went through ``filters[y]``."""
     rows = texels.reshape(len(texels), -1).astype(np.int64)
     up = np.vstack([np.zeros_like(rows[:1]), rows[:-1]])
-    left = np.pad(rows, ((0, 0), (4, 0)))[:, :-4]
-    up_left = np.pad(up, ((0, 0), (4, 0)))[:, :-4]
+    channels = texels.shape[2]
+    left, up_left = (np.pad(each, ((0, 0), (channels, 0)))[:, :-channels] for each in (rows, up))
     predictions = [np.zeros_like(rows), left, up, (left + up) // 2, paeth(left, up, up_left)]
     coded = b"".join(
         bytes([f]) + ((rows[y] - predictions[f % 5][y]) % 256).astype(np.uint8).tobytes()
         for y, f in enumerate(filters)
     )
-    header = struct.pack(">IIBBBBB", texels.shape[1], texels.shape[0], 8, 6, 0, 0, 0)
+    header = struct.pack(">IIBBBBB", texels.shape[1], texels.shape[0], 8, KINDS[channels], 0, 0, 0)
     packed = zlib.compress(coded)
     parts = (b"IHDR", header), (b"IDAT", packed[:40]), (b"IDAT", packed[40:]), (b"IEND", b"")
     return b"\x89PNG\r\n\x1a\n" + b"".join(chunk(*part) for part in parts)
@@ -51,19 +52,21 @@ def paeth(left: NDArray, up: NDArray, up_left: NDArray) -> NDArray:
     return np.choose(distances.argmin(axis=0), [left, up, up_left])
 
 
-def read(web_check, folder: Path, *images: bytes) -> list[dict[str, str]]:
+def read(web_check, folder: Path, *images: bytes, channels: int = 4) -> list[dict[str, str]]:
     paths = [folder / f"{i}.png" for i in range(len(images))]
     for path, image in zip(paths, images, strict=True):
         path.write_bytes(image)
-    return web_check("read-png", str(WIDTH), str(HEIGHT), *paths)
+    return web_check("read-png", str(WIDTH), str(HEIGHT), str(channels), *paths)
 
 
-def test_rows_come_back_through_every_filter(web_check, tmp_path, texels) -> None:
+@pytest.mark.parametrize("channels", KINDS)
+def test_rows_come_back_through_every_filter(web_check, tmp_path, texels, channels: int) -> None:
+    texels = texels[..., :channels]
     kinds = [[f] * HEIGHT for f in FILTERS] + [[y % 5 for y in range(HEIGHT)]]
     saved = io.BytesIO()
-    Image.fromarray(texels, "RGBA").save(saved, "PNG", optimize=True)
+    Image.fromarray(texels.squeeze()).save(saved, "PNG", optimize=True)
     images = [png(texels, kind) for kind in kinds] + [saved.getvalue()]
-    for found in read(web_check, tmp_path, *images):
+    for found in read(web_check, tmp_path, *images, channels=channels):
         np.testing.assert_array_equal(
             np.frombuffer(base64.b64decode(found["texels"]), np.uint8), texels.ravel()
         )
@@ -79,6 +82,8 @@ def test_what_is_wrong_is_refused(web_check, tmp_path, texels) -> None:
         "expected a filter from 0 to 4, found 5": png(texels, [5] * HEIGHT),
         "bytes unpacked, found 0": whole.replace(b"IDAT", b"iDAT"),
     }
+    (grey,) = read(web_check, tmp_path, whole, channels=1)
+    assert "expected grey of 8 bits" in grey["refusal"]
     wrong["holds more than its size says"] = png(
         np.concatenate([texels, texels]), [0] * (2 * HEIGHT)
     ).replace(struct.pack(">II", WIDTH, 2 * HEIGHT), struct.pack(">II", WIDTH, HEIGHT))

@@ -13,6 +13,7 @@ export type {
   LightSource,
   LitSurface,
   SceneLight,
+  Shown,
   SourceKind,
   View,
 } from "./types.js";

@@ -46,6 +46,7 @@ export interface LightSource {
  * | `normal` | the shading normal in world space, n/2 + 1/2 |
  * | `depth` | distance along the view, 0 at the near plane and 1 at the far one, linear |
  * | `lightmap-uv` | a checker of 4 × 4 texels a field, tinted by the page's uv; black without a lightmap |
+ * | `validity` | of the lightmap's texels: grey-green where they see their surroundings, redder the more of them lies inside something, blue outside charts; of the probes around a place, from 0 to 1 |
  * | others | functions of the source in use, as `LightShader.views` lists them; magenta where it lacks one |
  */
 export type View = LightView | "irradiance" | "albedo" | "normal" | "depth" | "lightmap-uv";
@@ -55,6 +56,14 @@ export type View = LightView | "irradiance" | "albedo" | "normal" | "depth" | "l
  * of direct light is added to it, the scene's live lights give it, or nobody does.
  */
 export type DirectFrom = "source" | "map" | "lights" | "none";
+
+/** What can be changed at once: see the properties of SceneLight of these names. */
+export interface Shown {
+  readonly source: string;
+  readonly view: View | null;
+  readonly screen: Texture | null;
+  readonly dynamicSource: string | null;
+}
 
 /** A mesh that the light shines on. */
 export interface LitSurface {
@@ -105,12 +114,17 @@ export interface SceneLight {
    * it was shown with, so going back and forth compiles nothing. Throws InputError for a name that there isn't.
    */
   use(name: string): void;
-  /** Adds a source, or replaces the one of this name; `kind` is "field" by default. */
+  /** Several changes at once; what is left out stays. Costs nothing where nothing changes. */
+  show(changes: Partial<Shown>): void;
+  /** Adds a source, or replaces the one of this name, whose textures are freed; `kind` is "field" by default. */
   add(name: string, shader: LightShader, kind?: SourceKind): LightSource;
   /** Takes an added source off; static meshes go back to the first source if it was theirs. */
   remove(name: string): void;
 
-  /** Lights an object, its children too, by the dynamic source, wherever it moves. */
+  /**
+   * Lights an object, its children too, by the dynamic source, wherever it moves. Of the file's lights that this
+   * source leaves out and that don't shine, direct light is added without shadows.
+   */
   lit(object: Object3D): void;
   /** Takes an object's light away again. */
   unlit(object: Object3D): void;
@@ -146,6 +160,8 @@ export interface SceneLight {
   readonly lights: readonly Light[];
   /** Call after changing a material of the scene, so that its copies for other sources and views follow. */
   refresh(): void;
+  /** Counts calls of `refresh`, for passes with copies of their own. */
+  readonly version: number;
   /** The material that came with the file, whose copy a mesh shows. */
   originalOf(material: Material): Material;
 

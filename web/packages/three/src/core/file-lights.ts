@@ -64,13 +64,13 @@ export class FileLights {
     return [...this.#live, ...this.#baked];
   }
 
-  get nLive(): number {
-    return this.#live.length;
+  /** Those that the bake left live. */
+  get live(): readonly Light[] {
+    return this.#live;
   }
 
-  /** Which of them shine, so that each light's first bounce counts once. */
-  shine({ baked, live }: { readonly baked: boolean; readonly live: boolean }): void {
-    for (const light of this.#baked) light.visible = baked;
-    for (const light of this.#live) light.visible = live;
+  /** Lets these shine, and no others. */
+  shine(lights: readonly Light[]): void {
+    for (const light of this.all) light.visible = lights.includes(light);
   }
 }

@@ -1,7 +1,8 @@
 /** What the two renderers do differently. */
 import type { LightShader, Probes, TextureLimits } from "@irradia/runtime";
-import type { Data3DTexture, Light, Material, Texture } from "three";
+import type { Data3DTexture, DataArrayTexture, Light, Material, Texture } from "three";
 import type { View } from "../types.js";
+import type { Lamps } from "./lamps.js";
 import type { ShadowMask } from "./shadow-mask.js";
 
 /** How a material is to show its light. */
@@ -10,9 +11,13 @@ export interface Shading {
   readonly light: LightShader | ScreenLight | GridLight | undefined;
   /** Direct light that a screen light leaves to the material. */
   readonly direct: LightShader | undefined;
+  /** Lights that this light leaves out and that don't shine by themselves. */
+  readonly lamps: Lamps | undefined;
   readonly view: View | null;
   /** Baked shadows of live lights. */
   readonly mask: ShadowMask | undefined;
+  /** What the view of this name shows, where the lightmap is what is shown. */
+  readonly validity: DataArrayTexture | undefined;
   /** Width and height of the page, where geometries drawn with it carry LIGHTMAP_ATTRIBUTES. */
   readonly lightmap: readonly [number, number] | undefined;
 }
@@ -56,8 +61,8 @@ export interface Painter {
   paint(copy: Material, original: Material, shading: Shading, key: string): void;
   /** The texture behind a screen light was exchanged. */
   screenChanged(screen: ScreenLight): void;
-  /** Once, before anything is drawn: lights that have baked shadows. */
-  shadow(mask: ShadowMask): void;
+  /** Once, before anything is drawn: lights that have baked shadows. Gives what undoes it. */
+  shadow(mask: ShadowMask): () => void;
   /** three.js' own grid of light probes, filled from a grid of ours. */
   probeGrid(probes: Probes): GridLight;
 }

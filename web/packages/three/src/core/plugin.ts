@@ -8,6 +8,7 @@ import { readBaked } from "./read.js";
 import { BakedSceneLight } from "./scene-light.js";
 import { readShadowMask } from "./shadow-mask.js";
 import { surfacesOf } from "./surfaces.js";
+import { readValidity } from "./validity.js";
 
 /** A plugin that paints so. */
 export function pluginOf(options: IrradiaOptions, newPainter: () => Painter): IrradiaPlugin {
@@ -45,8 +46,11 @@ class LightingPlugin implements GLTFLoaderPlugin {
     const { scene } = gltf;
     const surfaces = surfacesOf(scene, this.#parser, baked);
     const lights = new FileLights(scene, this.#parser, this.#restored, baked?.nodes ?? new Map());
-    const mask = await readShadowMask(baked, lights.maskChannels);
-    const loaded = { scene, baked, surfaces, lights, mask };
+    const [mask, validity] = await Promise.all([
+      readShadowMask(baked, lights.maskChannels),
+      readValidity(baked),
+    ]);
+    const loaded = { scene, baked, surfaces, lights, mask, validity };
     gltf.userData.irradia = new BakedSceneLight(loaded, this.#newPainter(), this.#options.source);
   }
 }

@@ -1,42 +1,38 @@
 /**
- * PNG images of 8-bit RGBA, without a browser's canvas: that would multiply colours by alpha, which in a shadow
- * mask is a light like the others.
+ * PNG images of 8-bit RGBA or grey, without a browser's canvas: that would multiply colours by alpha, which in a
+ * shadow mask is a light like the others, and may convert them.
  */
 import { expect } from "@irradia/runtime";
 
-export interface RgbaImage {
+/** Known before an image is read. */
+export interface ImageShape {
   readonly width: number;
   readonly height: number;
-  /** Row by row from the top. */
-  readonly texels: Uint8Array;
+  /** RGBA, or grey. */
+  readonly channels: 4 | 1;
 }
 
 const SIGNATURE = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
 const HEADER = 0x49484452; // IHDR
 const DATA = 0x49444154; // IDAT
-const RGBA_OF_8_BITS = [8, 6, 0, 0, 0]; // depth, kind of colour, compression, filter, interlacing
-const CHANNELS = 4;
+const KINDS = { 4: ["RGBA", 6], 1: ["grey", 0] } as const; // as PNG numbers them
 
 /**
- * Reads an image whose size is known.
+ * Reads an image whose shape is known.
  *
+ * @returns its texels, row by row from the top
  * @throws InputError where it is of another size or kind, cut short or damaged
  */
-export async function readPng(
-  bytes: Uint8Array,
-  [width, height]: readonly [number, number],
-  where: string,
-): Promise<RgbaImage> {
+export async function readPng(bytes: Uint8Array, shape: ImageShape, where: string): Promise<Uint8Array> {
   const isPng = SIGNATURE.every((byte, i) => bytes[i] === byte);
   expect(isPng, "expected a PNG image", where);
   const parts: Uint8Array<ArrayBuffer>[] = [];
   for (const { kind, data } of chunksOf(bytes, where)) {
-    if (kind === HEADER) expectHeader(data, width, height, where);
+    if (kind === HEADER) expectHeader(data, shape, where);
     if (kind === DATA) parts.push(new Uint8Array(data));
   }
-  const nBytes = height * (1 + CHANNELS * width);
-  const rows = await inflated(parts, nBytes, where);
-  return { width, height, texels: unfiltered(rows, width, height, where) };
+  const nBytes = shape.height * (1 + shape.channels * shape.width);
+  return unfiltered(await inflated(parts, nBytes, where), shape, where);
 }
 
 function* chunksOf(bytes: Uint8Array, where: string): Generator<{ kind: number; data: Uint8Array }> {
@@ -49,13 +45,15 @@ function* chunksOf(bytes: Uint8Array, where: string): Generator<{ kind: number; 
   }
 }
 
-function expectHeader(data: Uint8Array, width: number, height: number, where: string): void {
+function expectHeader(data: Uint8Array, { width, height, channels }: ImageShape, where: string): void {
   expect(data.length === 13, "its header is damaged", where);
   const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
   const size = `${view.getUint32(0)} × ${view.getUint32(4)}`;
   expect(size === `${width} × ${height}`, `expected ${width} × ${height} pixels, found ${size}`, where);
-  const isPlain = RGBA_OF_8_BITS.every((value, i) => data[8 + i] === value);
-  expect(isPlain, "expected RGBA of 8 bits, not interlaced", where);
+  const [kind, code] = KINDS[channels];
+  const plain = [8, code, 0, 0, 0]; // depth, kind of colour, compression, filter, interlacing
+  const isPlain = plain.every((value, i) => data[8 + i] === value);
+  expect(isPlain, `expected ${kind} of 8 bits, not interlaced`, where);
 }
 
 /** Exactly so many bytes; no more are ever held. */
@@ -80,23 +78,30 @@ async function inflated(
 }
 
 /** Undoes the filter of each row: PNG, third edition, section 9. */
-function unfiltered(rows: Uint8Array, width: number, height: number, where: string): Uint8Array {
-  const stride = CHANNELS * width;
+function unfiltered(rows: Uint8Array, { width, height, channels }: ImageShape, where: string): Uint8Array {
+  const stride = channels * width;
   const texels = new Uint8Array(stride * height);
+  let above: Uint8Array = new Uint8Array(stride);
   for (let y = 0; y < height; y++) {
-    const filter = rows[y * (stride + 1)] ?? 0;
+    const start = y * (stride + 1);
+    const filter = rows[start] ?? 0;
     expect(filter <= 4, `expected a filter from 0 to 4, found ${filter}`, where);
-    for (let x = 0; x < stride; x++) {
-      const [left, upLeft] =
-        x < CHANNELS
-          ? [0, 0]
-          : [texels[y * stride + x - CHANNELS] ?? 0, texels[(y - 1) * stride + x - CHANNELS] ?? 0];
-      const up = texels[(y - 1) * stride + x] ?? 0;
-      const coded = rows[y * (stride + 1) + 1 + x] ?? 0;
-      texels[y * stride + x] = coded + predicted(filter, left, up, upLeft);
-    }
+    const row = texels.subarray(y * stride, (y + 1) * stride);
+    row.set(rows.subarray(start + 1, start + 1 + stride));
+    if (filter > 0) unfilter(row, above, filter, channels);
+    above = row;
   }
   return texels;
+}
+
+/** In place. */
+function unfilter(row: Uint8Array, above: Uint8Array, filter: number, channels: number): void {
+  for (let x = 0; x < row.length; x++) {
+    const isFirst = x < channels;
+    const left = isFirst ? 0 : (row[x - channels] ?? 0);
+    const upLeft = isFirst ? 0 : (above[x - channels] ?? 0);
+    row[x] = (row[x] ?? 0) + predicted(filter, left, above[x] ?? 0, upLeft);
+  }
 }
 
 function predicted(filter: number, left: number, up: number, upLeft: number): number {

@@ -1,8 +1,9 @@
 /** The light of one scene: which source each mesh shows, and how. */
 import { type BakedLight, expect, type LightShader, lightmapShader } from "@irradia/runtime";
-import type { Group, Light, Material, Mesh, Object3D, Texture } from "three";
-import type { DirectFrom, LightSource, LitSurface, SceneLight, SourceKind, View } from "../types.js";
+import type { DataArrayTexture, Group, Light, Material, Mesh, Object3D, Texture } from "three";
+import type { DirectFrom, LightSource, LitSurface, SceneLight, Shown, SourceKind, View } from "../types.js";
 import type { FileLights } from "./file-lights.js";
+import { FirstBounce } from "./first-bounce.js";
 import { type GridLight, type Painter, ScreenLight, type Shading } from "./painter.js";
 import type { ShadowMask } from "./shadow-mask.js";
 import { addedSource, directOf, noSource, type Source, sourceNamed, sourcesOf } from "./sources.js";
@@ -19,6 +20,7 @@ export interface LoadedScene {
   readonly surfaces: LitSurface[];
   readonly lights: FileLights;
   readonly mask: ShadowMask | undefined;
+  readonly validity: DataArrayTexture | undefined;
 }
 
 export class BakedSceneLight implements SceneLight {
@@ -27,7 +29,10 @@ export class BakedSceneLight implements SceneLight {
   readonly #painter: Painter;
   readonly #wardrobe: Wardrobe;
   readonly #lights: FileLights;
+  readonly #firstBounce: FirstBounce;
   readonly #mask: ShadowMask | undefined;
+  readonly #unshadow: (() => void) | undefined;
+  readonly #validity: DataArrayTexture | undefined;
   readonly #surfaces: Map<Mesh, LitSurface>;
   readonly #ofFile: readonly Source[];
   #sources: Source[];
@@ -36,19 +41,24 @@ export class BakedSceneLight implements SceneLight {
   #view: View | null = null;
   #screen: ScreenLight | undefined;
   #isScreened = false;
+  #version = 0;
+  #wasValidityShown = false;
   #grid: GridLight | undefined;
   #direct: LightShader | undefined;
 
-  constructor({ scene, baked, surfaces, lights, mask }: LoadedScene, painter: Painter, first?: string) {
+  constructor(loaded: LoadedScene, painter: Painter, first?: string) {
+    const { scene, baked, surfaces, lights, mask, validity } = loaded;
     this.baked = baked;
     this.scene = scene;
     this.#painter = painter;
     this.#wardrobe = new Wardrobe(painter);
     this.#lights = lights;
+    this.#firstBounce = new FirstBounce(lights);
     this.#mask = mask;
-    if (mask) painter.shadow(mask);
+    this.#validity = validity;
+    this.#unshadow = mask && painter.shadow(mask);
     this.#surfaces = new Map(surfaces.map((surface) => [surface.mesh, surface]));
-    this.#ofFile = baked ? sourcesOf(baked, lights.nLive > 0, painter.limits) : [];
+    this.#ofFile = baked ? sourcesOf(baked, lights.live.length > 0, painter.limits) : [];
     this.#sources = [...this.#ofFile, noSource()];
     this.#source = first ? sourceNamed(this.#sources, first) : this.#best();
     this.#dynamic = this.#sources.find(isMobile);
@@ -63,19 +73,36 @@ export class BakedSceneLight implements SceneLight {
     return this.#source;
   }
 
+  show(changes: Partial<Shown>): void {
+    const next = { ...this.#shown, ...changes };
+    const source = sourceNamed(this.#sources, next.source);
+    const dynamic = next.dynamicSource === null ? undefined : sourceNamed(this.#sources, next.dynamicSource);
+    expect(!dynamic || isMobile(dynamic), "expected a source that needs no lightmap", `${dynamic?.name}`);
+    const before = [this.#source, this.#dynamic, this.#view, this.#isScreened];
+    this.#source = source;
+    this.#dynamic = dynamic;
+    this.#view = next.view;
+    this.#setScreen(next.screen);
+    const after = [this.#source, this.#dynamic, this.#view, this.#isScreened];
+    if (after.some((each, i) => each !== before[i])) this.#apply();
+  }
+
   use(name: string): void {
-    this.#source = sourceNamed(this.#sources, name);
-    this.#apply();
+    this.show({ source: name });
   }
 
   add(name: string, shader: LightShader, kind: SourceKind = "field"): LightSource {
+    expect(name !== "none", "expected another name, since 'none' is always there", "source of light");
     const direct = directOf(this.baked, this.#painter.limits);
     const source = addedSource(name, kind, shader, direct);
     const old = this.#sources.find((other) => other.name === name);
     this.#sources = [...this.#sources.filter((other) => other !== old).slice(0, -1), source, this.#none()];
     if (this.#source === old) this.#source = source;
-    if (this.#dynamic === old) this.#dynamic = isMobile(source) ? source : undefined;
-    if (old) this.#apply();
+    if (old && this.#dynamic === old) this.#dynamic = isMobile(source) ? source : undefined;
+    if (old) {
+      this.#apply();
+      this.#free(old);
+    }
     return source;
   }
 
@@ -86,6 +113,7 @@ export class BakedSceneLight implements SceneLight {
     if (this.#source === source) this.#source = this.#best();
     if (this.#dynamic === source) this.#dynamic = this.#sources.find(isMobile);
     this.#apply();
+    this.#free(source);
   }
 
   lit(object: Object3D): void {
@@ -110,10 +138,7 @@ export class BakedSceneLight implements SceneLight {
   }
 
   set dynamicSource(name: string | null) {
-    const source = name === null ? undefined : sourceNamed(this.#sources, name);
-    expect(!source || isMobile(source), "expected a source that needs no lightmap", `${name}`);
-    this.#dynamic = source;
-    this.#apply();
+    this.show({ dynamicSource: name });
   }
 
   get view(): View | null {
@@ -121,12 +146,12 @@ export class BakedSceneLight implements SceneLight {
   }
 
   set view(view: View | null) {
-    this.#view = view;
-    this.#apply();
+    this.show({ view });
   }
 
   get views(): readonly View[] {
-    return [...COMMON_VIEWS, ...(Object.keys(this.#source.shader?.views ?? {}) as View[])];
+    const ofShader = Object.keys(this.#source.shader?.views ?? {}) as View[];
+    return [...COMMON_VIEWS, ...ofShader, ...(this.#shownValidity ? (["validity"] as const) : [])];
   }
 
   get intensity(): number {
@@ -142,11 +167,7 @@ export class BakedSceneLight implements SceneLight {
   }
 
   get directFrom(): DirectFrom {
-    const { kind, quantity, hasDirectMap } = this.#source;
-    if (hasDirectMap) return "map";
-    if (kind !== "none" && quantity === "full") return "source";
-    const nLights = kind === "field" ? this.lights.length : this.#lights.nLive;
-    return nLights > 0 ? "lights" : "none";
+    return this.#firstBounce.whence(this.#source);
   }
 
   get screen(): Texture | null {
@@ -154,15 +175,7 @@ export class BakedSceneLight implements SceneLight {
   }
 
   set screen(texture: Texture | null) {
-    const wasScreened = this.#isScreened;
-    this.#isScreened = texture !== null;
-    if (texture) {
-      // One for good, so that materials which read it are made once.
-      this.#screen ??= new ScreenLight(texture);
-      this.#screen.texture = texture;
-      this.#painter.screenChanged(this.#screen);
-    }
-    if (this.#isScreened !== wasScreened) this.#apply();
+    this.show({ screen: texture });
   }
 
   get surfaces(): readonly LitSurface[] {
@@ -179,11 +192,17 @@ export class BakedSceneLight implements SceneLight {
     const uniforms = new Set(shaders.flatMap((shader) => shader.uniforms));
     const ofTextures = [...textures].reduce((sum, { plan }) => sum + plan.nBytes, 0);
     const ofUniforms = [...uniforms].reduce((sum, { values }) => sum + values.byteLength, 0);
-    const ofMask = this.#mask?.texture.image.data?.byteLength ?? 0;
-    return ofTextures + ofUniforms + ofMask + (this.#grid?.nBytes ?? 0);
+    const images = [this.#mask?.texture, this.#wasValidityShown ? this.#validity : undefined];
+    const ofImages = images.reduce((sum, texture) => sum + (texture?.image.data?.byteLength ?? 0), 0);
+    return ofTextures + ofUniforms + ofImages + (this.#grid?.nBytes ?? 0);
+  }
+
+  get version(): number {
+    return this.#version;
   }
 
   refresh(): void {
+    this.#version += 1;
     this.#wardrobe.clear();
     this.#apply();
   }
@@ -198,7 +217,20 @@ export class BakedSceneLight implements SceneLight {
     this.#grid?.dispose();
     for (const source of this.#sources) for (const shader of source.made) disposeTextures(shader);
     if (this.#direct) disposeTextures(this.#direct);
+    this.#unshadow?.();
     this.#mask?.texture.dispose();
+    this.#validity?.dispose();
+  }
+
+  get #shown(): Shown {
+    const { view, screen, dynamicSource } = this;
+    return { source: this.#source.name, view, screen, dynamicSource };
+  }
+
+  /** Of the texels that the source in use reads. */
+  get #shownValidity(): DataArrayTexture | undefined {
+    const isOfTexels = this.#source.kind === "lightmap" || this.#source.kind === "directional";
+    return isOfTexels ? this.#validity : undefined;
   }
 
   #none(): Source {
@@ -213,27 +245,45 @@ export class BakedSceneLight implements SceneLight {
   }
 
   #apply(): void {
+    this.#wasValidityShown ||= this.#view === "validity" && this.#shownValidity !== undefined;
     for (const surface of this.#surfaces.values()) {
       this.#wardrobe.dress(surface.mesh, this.#shadingOf(surface));
     }
-    const { kind, quantity } = this.#source;
-    // Fields of indirect light leave out all lights; maps and probes only those that stayed live.
-    this.#lights.shine({
-      baked: kind === "field" && this.directFrom === "lights",
-      live: kind === "none" || quantity === "indirect",
-    });
-    this.#showGrid(kind === "three-probes");
+    this.#firstBounce.shine(this.#source);
+    this.#showGrid(this.#source.kind === "three-probes");
+  }
+
+  #setScreen(texture: Texture | null): void {
+    this.#isScreened = texture !== null;
+    if (!texture || this.#screen?.texture === texture) return;
+    // One for good, so that materials which read it are made once.
+    this.#screen ??= new ScreenLight(texture);
+    this.#screen.texture = texture;
+    this.#painter.screenChanged(this.#screen);
+  }
+
+  /** What a source that nobody sees any more holds. */
+  #free(source: Source): void {
+    const kept = this.#sources.flatMap(({ made }) => made);
+    const textures = new Set(kept.flatMap((shader) => shader.textures));
+    for (const shader of source.made.filter((made) => !kept.includes(made))) {
+      this.#wardrobe.discard(shader);
+      disposeTextures(shader, textures);
+    }
   }
 
   #shadingOf({ rectangles, isDynamic }: LitSurface): Shading {
     const hasLightmap = rectangles.length > 0;
     const screen = this.#isScreened ? this.#screen : undefined;
     const { width, height } = this.baked?.lighting.lightmap ?? { width: 1, height: 1 };
+    const source = screen ? this.#source : this.#sourceOf(hasLightmap, isDynamic);
     return {
-      light: screen ?? this.#lightOf(hasLightmap, isDynamic),
+      light: screen ?? this.#lightOf(source, hasLightmap, isDynamic),
+      lamps: source && !hasLightmap ? this.#firstBounce.lamps(source, this.#source) : undefined,
       direct: screen && hasLightmap && this.#source.hasDirectMap ? this.#directMap() : undefined,
       view: this.#view,
       mask: hasLightmap ? this.#mask : undefined,
+      validity: hasLightmap && this.#view === "validity" ? this.#shownValidity : undefined,
       lightmap: hasLightmap ? [width, height] : undefined,
     };
   }
@@ -245,11 +295,22 @@ export class BakedSceneLight implements SceneLight {
     return this.#direct;
   }
 
-  #lightOf(hasLightmap: boolean, isDynamic: boolean): LightShader | GridLight | undefined {
-    if (this.#source.kind === "three-probes") return this.#threeGrid();
-    if (hasLightmap) return this.#source.shader;
-    if (this.#source.kind === "none") return undefined;
-    return !isDynamic && this.#source.isDynamic ? this.#source.bare : this.#dynamic?.moving;
+  /** What lights a mesh. */
+  #sourceOf(hasLightmap: boolean, isDynamic: boolean): Source | undefined {
+    const { kind, isDynamic: isEverywhere } = this.#source;
+    const isOurs = hasLightmap || kind === "three-probes" || kind === "none" || (isEverywhere && !isDynamic);
+    return isOurs ? this.#source : this.#dynamic;
+  }
+
+  #lightOf(
+    source: Source | undefined,
+    hasLightmap: boolean,
+    isDynamic: boolean,
+  ): LightShader | GridLight | undefined {
+    if (source?.kind === "three-probes") return this.#threeGrid();
+    if (hasLightmap) return source?.shader;
+    const isStatic = !isDynamic && source === this.#source;
+    return isStatic ? source?.bare : source?.moving;
   }
 
   #threeGrid(): GridLight | undefined {

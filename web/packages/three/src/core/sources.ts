@@ -84,7 +84,8 @@ export function addedSource(
   direct: Making["direct"],
 ): Source {
   const isEverywhere = shader.inputs.every((input) => EVERYWHERE.has(input));
-  return new Source(name, kind, shader.quantity, { make: () => shader, direct, isEverywhere });
+  const ofFields = kind === "field" ? direct : undefined;
+  return new Source(name, kind, shader.quantity, { make: () => shader, direct: ofFields, isEverywhere });
 }
 
 /** The source that is always there. */
@@ -95,11 +96,11 @@ export function noSource(): Source {
 /**
  * The sources of a file, in the order of `SourceKind`.
  *
- * @param hasLiveLights whether first bounces of lights were left to the engine
+ * @param hasLiveLights whether first bounces of lights were left to the engine; a sun that was has no node
  */
 export function sourcesOf(baked: BakedLight, hasLiveLights: boolean, limits: TextureLimits): Source[] {
   const { lighting, lightmap, directional, field, probes } = baked;
-  const quantity = hasLiveLights ? "indirect" : "full";
+  const quantity = hasLiveLights ? "indirect" : (lighting.lightmap?.light ?? "full");
   const sources: Source[] = [];
   const add = (kind: SourceKind, light: Quantity, making: Making): void => {
     sources.push(new Source(kind, kind, light, making));

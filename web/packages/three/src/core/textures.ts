@@ -47,9 +47,9 @@ export function isInteger({ plan }: ShaderTexture): boolean {
   return plan.format.endsWith("uint");
 }
 
-/** Frees what a shader holds on GPUs; drawing with it again uploads it again. */
-export function disposeTextures(shader: LightShader): void {
-  for (const texture of shader.textures) known.get(texture)?.dispose();
+/** Frees what a shader holds on GPUs, but for what is `kept`; drawing with it again uploads it again. */
+export function disposeTextures(shader: LightShader, kept: ReadonlySet<ShaderTexture> = new Set()): void {
+  for (const texture of shader.textures) if (!kept.has(texture)) known.get(texture)?.dispose();
 }
 
 function newTexture({ name, plan, data, access }: ShaderTexture): DataArrayTexture {

@@ -1,4 +1,5 @@
 /** Copies of materials, one for each way in which they are shown. */
+import type { LightShader } from "@irradia/runtime";
 import type { Material, Mesh } from "three";
 import type { Painter, Shading } from "./painter.js";
 import { takesLight } from "./surfaces.js";
@@ -12,6 +13,7 @@ export class Wardrobe {
   readonly #scene = nextId();
   readonly #copies = new Map<Material, Map<string, Material>>();
   readonly #originals = new WeakMap<Material, Material>();
+  readonly #lights = new WeakMap<Material, Shading["light"]>();
   readonly #ids = new WeakMap<object, number>();
 
   constructor(painter: Painter) {
@@ -38,6 +40,17 @@ export class Wardrobe {
       : this.originalOf(material);
   }
 
+  /** Throws the copies away that are lit so, which no mesh wears. */
+  discard(light: LightShader): void {
+    for (const copies of this.#copies.values()) {
+      for (const [key, copy] of copies) {
+        if (this.#lights.get(copy) !== light) continue;
+        copy.dispose();
+        copies.delete(key);
+      }
+    }
+  }
+
   /** Throws all copies away. Meshes that wear one must be dressed anew. */
   clear(): void {
     for (const copies of this.#copies.values()) for (const copy of copies.values()) copy.dispose();
@@ -58,6 +71,7 @@ export class Wardrobe {
   #copy(original: Material, shading: Shading, key: string): Material {
     const copy = original.clone();
     this.#originals.set(copy, original);
+    this.#lights.set(copy, shading.light);
     this.#painter.paint(copy, original, shading, key);
     return copy;
   }
@@ -68,8 +82,8 @@ export class Wardrobe {
     return id;
   }
 
-  #keyOf({ light, direct, view, lightmap }: Shading): string {
-    const id = `${this.#idOf(light)}+${this.#idOf(direct)}`;
+  #keyOf({ light, direct, lamps, validity, view, lightmap }: Shading): string {
+    const id = [light, direct, lamps, validity].map((part) => this.#idOf(part)).join("+");
     return `irradia-${this.#scene}-${id}-${view ?? "picture"}-${lightmap ? "mapped" : "loose"}`;
   }
 }

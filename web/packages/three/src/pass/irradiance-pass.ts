@@ -41,7 +41,10 @@ export interface PassDrawer<Target extends DrawnTarget> {
   resize(target: Target, width: number, height: number): void;
   drawSurfaces(target: Target, scene: Object3D, camera: Camera): void;
   drawLight(target: Target, stage: ScreenStage, light: LightShader, inputs: StageInputs): void;
-  dispose(target: Target): void;
+  /** Frees a target. */
+  release(target: Target): void;
+  /** Frees what it draws light with. */
+  dispose(): void;
 }
 
 /** What a stage reads. */
@@ -71,8 +74,9 @@ export abstract class BaseIrradiancePass<Target extends DrawnTarget> {
   readonly #surfaces: Target;
   readonly #irradiance: Target;
   readonly #half: Target | undefined;
-  readonly #materials = new WeakMap<Material, Material>();
+  readonly #materials = new Map<Material, Material>();
   readonly #hidden = new MeshBasicMaterial({ visible: false });
+  #version: number;
 
   protected constructor(
     drawer: PassDrawer<Target>,
@@ -85,6 +89,7 @@ export abstract class BaseIrradiancePass<Target extends DrawnTarget> {
     this.#surfaces = drawer.newTarget(true);
     this.#irradiance = drawer.newTarget(false);
     this.#half = this.#isHalf ? drawer.newTarget(false) : undefined;
+    this.#version = light.version;
   }
 
   /**
@@ -107,11 +112,23 @@ export abstract class BaseIrradiancePass<Target extends DrawnTarget> {
     return true;
   }
 
-  /** Gives the light back to the materials, and frees what the pass holds. */
+  /**
+   * Gives the light back to the materials, and frees what the pass holds. To leave it out for a while, set the
+   * light's `screen` to null instead: making a pass anew compiles its shaders anew.
+   */
   dispose(): void {
     this.#light.screen = null;
     for (const target of [this.#surfaces, this.#irradiance, this.#half])
-      if (target) this.#drawer.dispose(target);
+      if (target) this.#drawer.release(target);
+    this.#forgetMaterials();
+    this.#hidden.dispose();
+    this.#drawer.dispose();
+  }
+
+  /** Of materials that may have changed since. */
+  #forgetMaterials(): void {
+    for (const material of this.#materials.values()) material.dispose();
+    this.#materials.clear();
   }
 
   #resize(): void {
@@ -123,6 +140,8 @@ export abstract class BaseIrradiancePass<Target extends DrawnTarget> {
   }
 
   #drawSurfaces(scene: Object3D, camera: Camera): void {
+    if (this.#version !== this.#light.version) this.#forgetMaterials();
+    this.#version = this.#light.version;
     const lit = new Set<Object3D>(this.#light.surfaces.map(({ mesh }) => mesh));
     const restore = exchangeMaterials(scene, (worn, mesh) => {
       const original = this.#light.originalOf(worn);

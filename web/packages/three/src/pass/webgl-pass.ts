@@ -125,8 +125,13 @@ class WebGLPassDrawer implements PassDrawer<WebGLRenderTarget> {
     this.#into(target, () => this.#renderer.render(stage.mesh, this.#camera));
   }
 
-  dispose(target: WebGLRenderTarget): void {
+  release(target: WebGLRenderTarget): void {
     target.dispose();
+  }
+
+  dispose(): void {
+    for (const stage of this.#stages.values()) stage.mesh.material.dispose();
+    this.#stages.clear();
   }
 
   /** Draws to a target without shadows and without headsets, and leaves the renderer as it was. */

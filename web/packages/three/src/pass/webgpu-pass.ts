@@ -92,8 +92,13 @@ class WebGPUPassDrawer implements PassDrawer<RenderTarget> {
     this.#into(target, () => stage.quad.render(this.#renderer));
   }
 
-  dispose(target: RenderTarget): void {
+  release(target: RenderTarget): void {
     target.dispose();
+  }
+
+  dispose(): void {
+    for (const stage of this.#stages.values()) stage.quad.material.dispose();
+    this.#stages.clear();
   }
 
   /** Draws to a target that is cleared to nothing, and leaves the renderer as it was. */

@@ -1,8 +1,10 @@
 /** GLSL around a source of light, in the terms of three.js' own chunks. */
 import { CHECKER_TEXELS } from "../core/painter.js";
+import { VALIDITY_COLOURS, VALIDITY_SHADE } from "../core/validity.js";
 import { LIGHTMAP_ATTRIBUTES } from "../types.js";
 
 const { uv, rectangle, page } = LIGHTMAP_ATTRIBUTES;
+const { outside, hidden, whole } = VALIDITY_COLOURS;
 
 export const VERTEX = {
   declarations: `
@@ -86,5 +88,14 @@ RE_IndirectDiffuse(irradiaLight, geometryPosition, geometryNormal, geometryViewD
     const field = `floor(vIrradiaUv * vec2(${width}.0, ${height}.0) / ${CHECKER_TEXELS}.0)`;
     return `vec3(vIrradiaUv, 0.5) * (mod(dot(${field}, vec2(1.0)), 2.0) < 0.5 ? 1.0 : 0.3)`;
   },
+  validityDeclarations: `
+uniform highp sampler2DArray irradiaValidity;
+vec3 irradiaValidityColour(vec3 normal) {
+  float code = 255.0 * texture(irradiaValidity, vec3(vIrradiaUv, vIrradiaPage)).r;
+  vec3 inChart = mix(vec3(${hidden}), vec3(${whole}), (code - 1.0) / 254.0);
+  vec3 colour = vIrradiaPage < 0.0 || code < 0.5 ? vec3(${outside}) : inChart;
+  return colour * mix(1.0, 0.5 + 0.5 * normal.y, ${VALIDITY_SHADE});
+}`,
+  validity: "irradiaValidityColour(irradiaNormal)",
   missingView: "vec3(1.0, 0.0, 1.0)",
 };

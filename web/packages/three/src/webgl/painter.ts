@@ -1,11 +1,13 @@
 /** Light in the materials of WebGLRenderer, by onBeforeCompile. */
 import type { LightShader, LightView, Probes, TextureLimits } from "@irradia/runtime";
 import type { IUniform, Material, WebGLProgramParametersWithUniforms } from "three";
+import type { Lamps } from "../core/lamps.js";
 import { GridLight, type Painter, ScreenLight, type Shading } from "../core/painter.js";
 import type { ShadowMask } from "../core/shadow-mask.js";
 import type { Inputs } from "../types.js";
 import { bindGlsl, callOf } from "./bind.js";
 import { FRAGMENT, VERTEX } from "./chunks.js";
+import { LampUniform, lampDeclarations, lampLight } from "./lamps.js";
 import { probeGrid } from "./probe-grid.js";
 import { MASK_DECLARATIONS, MaskChannels, maskedLights } from "./shadow.js";
 
@@ -16,6 +18,7 @@ export class WebGLPainter implements Painter {
   readonly #intensity: IUniform<number> = { value: 1 };
   #channels: MaskChannels | undefined;
   readonly #screens = new WeakMap<ScreenLight, IUniform>();
+  readonly #lamps = new WeakMap<Lamps, LampUniform>();
 
   constructor(readonly limits: TextureLimits) {}
 
@@ -36,7 +39,7 @@ export class WebGLPainter implements Painter {
       program.vertexShader = inserted(program.vertexShader, vertex);
       program.fragmentShader = masked(inserted(program.fragmentShader, fragment), shading);
     };
-    if (shading.mask) this.#followLights(copy, original);
+    if (shading.mask || shading.lamps) this.#followLights(copy, original, shading);
     copy.customProgramCacheKey = () => `${original.customProgramCacheKey()}|${key}`;
   }
 
@@ -44,30 +47,41 @@ export class WebGLPainter implements Painter {
     this.#uniformOf(screen).value = screen.texture;
   }
 
-  shadow(mask: ShadowMask): void {
+  shadow(mask: ShadowMask): () => void {
     this.#channels = new MaskChannels(mask);
+    return () => {}; // materials alone know
   }
 
   probeGrid(probes: Probes): GridLight {
     return probeGrid(probes);
   }
 
-  /** Which light is which changes with what shines. */
-  #followLights(copy: Material, original: Material): void {
+  /** Which light is which changes with what shines; lamps are lights that move. */
+  #followLights(copy: Material, original: Material, { mask, lamps }: Shading): void {
     copy.onBeforeRender = (renderer, scene, camera, ...rest) => {
       original.onBeforeRender(renderer, scene, camera, ...rest);
-      this.#channels?.update(scene, camera, renderer.info.render.frame);
+      const { frame } = renderer.info.render;
+      if (mask) this.#channels?.update(scene, camera, frame);
+      if (lamps) this.#lampsOf(lamps).update(this.intensity, frame);
     };
   }
 
-  #uniformsOf({ light, direct, mask }: Shading): Record<string, IUniform> {
+  #uniformsOf({ light, direct, lamps, mask, validity }: Shading): Record<string, IUniform> {
     const intensity = {
       irradiaIntensity: this.#intensity,
       ...(direct && bindGlsl(direct).uniforms),
+      ...(lamps && { irradiaLamps: this.#lampsOf(lamps).uniform }),
       ...(mask && this.#channels?.uniforms),
+      ...(validity && { irradiaValidity: { value: validity } }),
     };
     if (light instanceof ScreenLight) return { ...intensity, irradiaScreen: this.#uniformOf(light) };
     return { ...intensity, ...(isShader(light) && bindGlsl(light).uniforms) };
+  }
+
+  #lampsOf(lamps: Lamps): LampUniform {
+    const found = this.#lamps.get(lamps) ?? new LampUniform(lamps);
+    this.#lamps.set(lamps, found);
+    return found;
   }
 
   #uniformOf(screen: ScreenLight): IUniform {
@@ -100,13 +114,18 @@ function vertexPieces({ lightmap }: Shading): Pieces {
 }
 
 function fragmentPieces(shading: Shading): Pieces {
-  const { light, view, mask, lightmap } = shading;
+  const { light, lamps, view, mask, validity, lightmap } = shading;
   const inputs = { ...FRAGMENT.inputs, ...(lightmap && FRAGMENT.lightmapInputs) };
   const varyings = [FRAGMENT.declarations, lightmap && FRAGMENT.lightmapDeclarations];
-  const ofMask = mask && MASK_DECLARATIONS;
+  const ofImages = [mask && MASK_DECLARATIONS, validity && FRAGMENT.validityDeclarations];
   return {
-    common: [...varyings, ...textsOf(shading), ofMask].filter(Boolean).join("\n"),
-    lights_fragment_begin: `${FRAGMENT.frame}\nvec3 irradiaLight = ${irradiance(shading, inputs)};`,
+    common: [...varyings, ...textsOf(shading), ...ofImages].filter(Boolean).join("\n"),
+    ...(lamps && { lights_pars_begin: lampDeclarations(lamps) }),
+    lights_fragment_begin: [
+      FRAGMENT.frame,
+      `vec3 irradiaLight = ${irradiance(shading, inputs)};`,
+      lamps ? lampLight(lamps) : "",
+    ].join("\n"),
     ...(light && { lights_fragment_end: FRAGMENT.noSky }),
     ...(light && !(light instanceof GridLight) && { aomap_fragment: FRAGMENT.add }),
     ...(view && { "!opaque_fragment": `outgoingLight = ${viewOf(shading, inputs)};` }),
@@ -138,7 +157,8 @@ function isShader(light: Shading["light"]): light is LightShader {
   return light !== undefined && "entry" in light;
 }
 
-function viewOf({ light, view, lightmap }: Shading, inputs: Expressions): string {
+function viewOf({ light, view, validity, lightmap }: Shading, inputs: Expressions): string {
+  if (validity) return FRAGMENT.validity;
   if (view === "lightmap-uv") return lightmap ? FRAGMENT.checker(lightmap) : "vec3(0.0)";
   const common = FRAGMENT.views[view ?? ""];
   if (common) return common;

@@ -8,9 +8,10 @@ import type { ShadowMask } from "../core/shadow-mask.js";
 import type { Inputs } from "../types.js";
 import { lightNode } from "./bind.js";
 import { inputsOf } from "./inputs.js";
+import { shine } from "./lamps.js";
 import { ownIrradiance, probeGrid } from "./probe-grid.js";
 import { shadowLight } from "./shadow.js";
-import { commonView, MISSING_VIEW } from "./views.js";
+import { commonView, MISSING_VIEW, validityView } from "./views.js";
 
 type Vec3Node = Node<"vec3">;
 
@@ -54,8 +55,11 @@ export class WebGPUPainter implements Painter {
     this.#screenNode(screen).value = screen.texture;
   }
 
-  shadow(mask: ShadowMask): void {
-    for (const [light, channel] of mask.channels) shadowLight(light, mask.texture, channel);
+  shadow({ channels, texture: mask }: ShadowMask): () => void {
+    const undo = [...channels].map(([light, channel]) => shadowLight(light, mask, channel));
+    return () => {
+      for (const each of undo) each();
+    };
   }
 
   probeGrid(probes: Probes): GridLight {
@@ -66,6 +70,7 @@ export class WebGPUPainter implements Painter {
   #indirect(shading: Shading): Vec3Node {
     return Fn((builder: NodeBuilder) => {
       const { ambientOcclusion, iblIrradiance } = builder.context as LightingContext;
+      if (shading.lamps) shine(shading.lamps, this.#intensity, builder);
       // All indirect light is multiplied by the occlusion, which baked light holds already. It holds the sky as
       // well: the environment's diffuse light goes by the very formula that it came in by.
       if (shading.light instanceof GridLight) return iblIrradiance.negate();
@@ -90,7 +95,8 @@ export class WebGPUPainter implements Painter {
   }
 
   #viewOf(shading: Shading, builder: NodeBuilder): Vec3Node {
-    const { light, view, lightmap } = shading;
+    const { light, view, validity, lightmap } = shading;
+    if (validity) return validityView(validity);
     if (view === "irradiance") return this.#irradiance(shading, builder).div(Math.PI) as Vec3Node;
     const common = commonView(view, builder, lightmap);
     if (common) return common;

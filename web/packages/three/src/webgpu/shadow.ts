@@ -10,8 +10,8 @@ interface Coloured {
   colorNode: Node<"vec3"> | (() => Node<"float">);
 }
 
-/** Multiplies a light by a channel of the mask, on surfaces with a lightmap. */
-export function shadowLight(light: Light, mask: DataArrayTexture, channel: number): void {
+/** Multiplies a light by a channel of the mask, on surfaces with a lightmap. Gives what undoes it. */
+export function shadowLight(light: Light, mask: DataArrayTexture, channel: number): () => void {
   const share = Fn((builder: NodeBuilder) => {
     if (!builder.geometry.hasAttribute(LIGHTMAP_ATTRIBUTES.uv)) return float(1);
     const { lightmapUv, page } = lightmapPlace();
@@ -19,12 +19,17 @@ export function shadowLight(light: Light, mask: DataArrayTexture, channel: numbe
     return [texel.r, texel.g, texel.b, texel.a][channel] ?? float(1);
   });
   const coloured = light as Light & Partial<Coloured>;
+  const undo = () => {
+    delete coloured.colorNode;
+    light.dispose(); // three.js' node of the light keeps the colour that it was made with
+  };
   if ("isSpotLight" in light) {
     // three.js asks functions, too, for a key.
     coloured.colorNode = Object.assign(() => share() as Node<"float">, { getCacheKey: () => channel });
-    return;
+    return undo;
   }
   const colour = uniform(new Color()).setGroup(renderGroup);
   colour.onRenderUpdate(() => colour.value.copy(light.color).multiplyScalar(light.intensity));
   coloured.colorNode = (colour as unknown as Node<"vec3">).mul(share() as Node<"float">);
+  return undo;
 }

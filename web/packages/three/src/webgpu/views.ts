@@ -1,15 +1,20 @@
 /** Debug views that need no source of light. */
+import type { DataArrayTexture } from "three";
 import {
   cameraFar,
   cameraNear,
   diffuseColor,
   diffuseContribution,
+  float,
+  mix,
   normalWorld,
   positionView,
+  texture,
   vec3,
 } from "three/tsl";
 import type { Node, NodeBuilder } from "three/webgpu";
 import { CHECKER_TEXELS } from "../core/painter.js";
+import { VALIDITY_COLOURS, VALIDITY_SHADE } from "../core/validity.js";
 import type { View } from "../types.js";
 import { lightmapPlace } from "./inputs.js";
 
@@ -34,6 +39,18 @@ export function commonView(
     default:
       return undefined;
   }
+}
+
+/** Colours of the lightmap's texels by how valid they are. */
+export function validityView(validity: DataArrayTexture): Node<"vec3"> {
+  const { lightmapUv, page } = lightmapPlace();
+  const texel = texture(validity, lightmapUv).depth(page.toInt()).level(float(0)) as unknown as Node<"vec4">;
+  const code = texel.r.mul(255);
+  const { outside, hidden, whole } = VALIDITY_COLOURS;
+  const inChart = mix(vec3(...hidden), vec3(...whole), code.sub(1).div(254));
+  const isOutside = page.lessThan(0).or(code.lessThan(0.5));
+  const shade = mix(1, normalWorld.y.mul(0.5).add(0.5), VALIDITY_SHADE);
+  return (isOutside.select(vec3(...outside), inChart) as Node<"vec3">).mul(shade);
 }
 
 function checker([width, height]: readonly [number, number]): Node<"vec3"> {
