@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from .viewer_tours import Found, pixels, steps_apart
+from .viewer_tours import SOURCES, Found, pixels, steps_apart
 
 MAX_BYTES = 400_000  # packed
 LOW_ROOM = 0.6  # share of a low room at which eyes are
@@ -53,6 +53,22 @@ def test_a_link_names_only_what_is_unusual(links):
         "place",
         "panel",
     }
+
+
+def test_a_link_without_a_camera_shows_the_scene_through_its_own(links):
+    assert links["plain"] is None
+    assert steps_apart(pixels(links["home"]), pixels(links["fresh"])) > 0, "the tone curve is another"
+    assert np.abs(pixels(links["home"]) - pixels(links["fresh"])).mean() < 12
+
+
+def test_files_dropped_while_a_scene_is_read_belong_to_it(links):
+    assert links["dropped"]["ids"] == [*SOURCES, "field:field.safetensors", "none", "reference"]
+    assert links["dropped"]["told"]["state"] == "ready"
+
+
+def test_a_scene_that_takes_anothers_place_is_seen_through_its_own_camera(links):
+    assert links["dropped"]["kept"] is None
+    assert links["dropped"]["place"] is None
 
 
 def test_an_object_goes_where_it_is_dragged(hands):

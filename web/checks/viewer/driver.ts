@@ -42,8 +42,13 @@ export class Driver {
   }
 
   /** Drops files that are served under these addresses; waits until the page has made of them what it can. */
-  async drop(...addresses: string[]): Promise<Told> {
-    await this.page.evaluate(dropped, addresses);
+  drop(...addresses: string[]): Promise<Told> {
+    return this.dropOneAfterAnother(addresses);
+  }
+
+  /** Drops some files, and others at once, without waiting for what becomes of the first. */
+  async dropOneAfterAnother(...groups: string[][]): Promise<Told> {
+    await this.page.evaluate(dropped, groups);
     await this.page.evaluate(() => irradiaViewer.settled());
     return this.told();
   }
@@ -86,11 +91,15 @@ export class Driver {
   }
 }
 
-async function dropped(addresses: string[]): Promise<void> {
-  const transfer = new DataTransfer();
-  for (const address of addresses) {
-    const bytes = await (await fetch(address)).arrayBuffer();
-    transfer.items.add(new File([bytes], address.split("/").at(-1) ?? address));
+async function dropped(groups: string[][]): Promise<void> {
+  const transfers: DataTransfer[] = [];
+  for (const addresses of groups) {
+    const transfer = new DataTransfer();
+    for (const address of addresses) {
+      const bytes = await (await fetch(address)).arrayBuffer();
+      transfer.items.add(new File([bytes], address.split("/").at(-1) ?? address));
+    }
+    transfers.push(transfer);
   }
   let hasBegun = false;
   const done = new Promise<void>((resolve) => {
@@ -101,8 +110,10 @@ async function dropped(addresses: string[]): Promise<void> {
       resolve();
     });
   });
-  const options = { dataTransfer: transfer, bubbles: true, cancelable: true };
-  document.body.dispatchEvent(new DragEvent("dragenter", options));
-  document.body.dispatchEvent(new DragEvent("drop", options));
+  for (const dataTransfer of transfers) {
+    const options = { dataTransfer, bubbles: true, cancelable: true };
+    document.body.dispatchEvent(new DragEvent("dragenter", options));
+    document.body.dispatchEvent(new DragEvent("drop", options));
+  }
   await done;
 }

@@ -110,7 +110,21 @@ async function links(driver: Driver): Promise<Record<string, unknown>> {
     location.hash = location.hash.replace("tone=aces", "tone=agx");
   });
   await driver.page.waitForFunction(() => irradiaViewer.state.value.tone === "agx");
-  return { hash, before, after };
+  await driver.page.evaluate(() => {
+    location.hash = "#left=lightmap";
+  });
+  await driver.page.waitForFunction(() => irradiaViewer.state.value.tone === "neutral");
+  const plain = (await driver.state()).camera;
+  await driver.settled();
+  const home = await driver.picture();
+  await driver.open(`?scene=${SCENE}&left=lightmap&panel=0&tone=aces`);
+  const fresh = await driver.picture();
+  await driver.set({ tone: "neutral", camera, place: [0.3, 0.2, 0.2] });
+  await driver.page.waitForFunction(() => location.hash.includes("tone=neutral"));
+  await driver.dropOneAfterAnother([SCENE], ["/files/field.safetensors"], ["/files/render.png"]);
+  const { camera: kept, place } = await driver.state();
+  const dropped = { ids: await driver.page.evaluate(choiceIds), kept, place, told: await driver.told() };
+  return { hash, before, after, plain, home, fresh, dropped };
 }
 
 /** Files that are damaged; the scene before stays. */

@@ -47,7 +47,7 @@ export class App {
       mover,
       status,
       limits: () => (this.#renderer ? limitsOf(this.#renderer) : WEBGL2_LIMITS),
-      onScene: () => this.#director.welcome(),
+      onScene: (isReplacement) => this.#director.welcome(isReplacement),
       onPose: (pose) => this.lookFrom(pose),
       onLight: () => this.#director.resolve(),
     });
@@ -140,12 +140,17 @@ export class App {
       const isOther = (key: keyof ViewerState): boolean => now[key] !== before[key];
       if (isOther("left") || isOther("right") || isOther("compare")) this.#director.resolve();
       if (isOther("object") || isOther("place")) this.#director.placeObject();
-      if (now.camera && isOther("camera") && !isSamePose(now.camera, this.#rig.pose)) {
-        this.#rig.pose = now.camera;
-      }
+      if (isOther("camera")) this.#follow(now.camera);
       this.#loop?.invalidate();
     });
     new ResizeObserver(() => this.#resize()).observe(this.host);
+  }
+
+  /** @param pose undefined for the scene's own */
+  #follow(pose: Pose | undefined): void {
+    const { model, camera } = this.#stage;
+    const wanted = pose ?? (model && startPose(model, camera.aspect));
+    if (wanted && !isSamePose(wanted, this.#rig.pose)) this.#rig.pose = wanted;
   }
 
   #resize(): void {

@@ -32,12 +32,17 @@ export class Director {
     this.#options = options;
   }
 
-  /** A scene has been opened. */
-  welcome(): void {
+  /**
+   * A scene has been opened.
+   *
+   * @param isReplacement of a scene that the state spoke of
+   */
+  welcome(isReplacement: boolean): void {
     const { stage, rig, state } = this.#options;
     const { model } = stage;
     if (!model) return;
     rig.setModel(model.root, model.box);
+    if (isReplacement) state.set({ camera: undefined, place: undefined });
     rig.pose = state.value.camera ?? startPose(model, stage.camera.aspect);
     this.placeObject();
     this.resolve();
@@ -161,8 +166,8 @@ export class Director {
 
   /** Repeats in the state where the camera came to rest, unless that is where it would start. */
   #keepPose(): void {
-    const { stage, state, rig } = this.#options;
-    if (!stage.model) return;
+    const { stage, state, status, rig } = this.#options;
+    if (!stage.model || status.value.isOpening) return; // the next scene is not to be seen from here
     const known = state.value.camera ?? startPose(stage.model, stage.camera.aspect);
     if (!isSamePose(known, rig.pose)) state.set({ camera: rig.pose });
   }

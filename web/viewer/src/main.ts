@@ -13,13 +13,14 @@ import { repeatInUrl } from "./ui/repeat.js";
 const options = readPageOptions(location.search);
 // Kiosks are often drawn without a GPU, where evaluating light once a pixel saves most of the time.
 const defaults = options.kiosk ? { ...DEFAULTS, pass: "full" as const } : DEFAULTS;
+const base = readState(location.search, "", defaults);
 const state = new Store(readState(location.search, location.hash, defaults));
 const status = new Store(NO_STATUS);
 const host = document.createElement("div");
 host.className = "view";
 const app = new App(host, state, status, options);
-buildPage(app);
-repeatInUrl(state, status);
+buildPage(app, base);
+repeatInUrl(state, status, base);
 
 const ready = start().catch((error: unknown) => {
   const problem = { ...problemOf(error, "the page"), title: "Can't start" };
@@ -35,26 +36,38 @@ async function start(): Promise<void> {
   await app.start();
   const manifest = await manifestOfPage();
   if (manifest) state.set(startOf(manifest.start, state.value));
-  await openScene(manifest);
-  const { field, environment } = state.value;
-  for (const url of [field, environment]) if (url !== "") await app.session.openUrl(url);
-  if (options.pose !== undefined) app.lookFromPicture(options.pose);
-  app.session.finish();
+  state.subscribe((now, before) => follow(manifest, now, before));
+  openScene(manifest);
+  openBeside(state.value.environment);
+  const { pose } = options;
+  await app.session.after(() => pose !== undefined && app.lookFromPicture(pose));
   await app.settled();
-  state.subscribe((now, before) => {
-    if (now.scene === before.scene) return;
-    status.set({ isOpening: true });
-    void openScene(manifest).then(() => app.session.finish());
-  });
 }
 
-/** The manifest's scene of the number that the state says, or the one at its address. */
-async function openScene(manifest: Manifest | undefined): Promise<void> {
-  const { scene } = state.value;
+/** Opens what the state names now and didn't before. */
+function follow(manifest: Manifest | undefined, now: ViewerState, before: ViewerState): void {
+  if (now.scene !== before.scene) openScene(manifest);
+  else if (now.field !== before.field) {
+    if (before.field !== "") void app.session.closeField(before.field);
+    openBeside(now.field);
+  }
+  if (now.environment === before.environment) return;
+  if (now.environment === "") void app.session.closeEnvironment();
+  else openBeside(now.environment);
+}
+
+/** The manifest's scene of the number that the state says, or the one at its address; and its field. */
+function openScene(manifest: Manifest | undefined): void {
+  const { scene, field } = state.value;
   const entry = manifest?.scenes[scene === "" ? manifest.start.scene : Number(scene)];
   status.set({ scenes: manifest?.scenes.map(({ name }) => name) ?? [] });
-  if (entry) await app.session.openManifest(entry);
-  else if (scene !== "") await app.session.openUrl(scene);
+  if (entry) void app.session.openManifest(entry);
+  else if (scene !== "") void app.session.openScene(scene);
+  openBeside(field);
+}
+
+function openBeside(url: string): void {
+  if (url !== "") void app.session.openUrl(url);
 }
 
 /** What a manifest wants to be seen first, where the address doesn't say. */

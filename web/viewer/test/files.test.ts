@@ -1,8 +1,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { InputError } from "@irradia/runtime";
+import { bytesBySlices, bytesFromBase64 } from "../src/files/bytes.js";
 import { readCameraFile } from "../src/files/camera-file.js";
-import { fileName, isPanorama, kindOf } from "../src/files/kinds.js";
+import { fileName, isKnownName, isPanorama, kindOf, wholeBuffer } from "../src/files/kinds.js";
 import { readManifest } from "../src/files/manifest.js";
 import { problemOf } from "../src/files/problem.js";
 import { readRadianceHdr } from "../src/files/radiance.js";
@@ -17,6 +18,36 @@ test("first bytes tell what a file is, names only where they don't", () => {
   assert.equal(kindOf({ name: "F.SAFETENSORS", bytes: bytes("") }), "field");
   assert.equal(kindOf({ name: "weights.bin", bytes: bytes("") }), "field-bin");
   assert.equal(kindOf({ name: "notes.txt", bytes: bytes("hello") }), "unknown");
+});
+
+test("base64 of any length gives its bytes, with line ends in it or not", () => {
+  for (const length of [0, 1, 2, 3, 3 * 2 ** 18 - 1, 3 * 2 ** 18, 3 * 2 ** 18 + 1]) {
+    const wanted = Uint8Array.from({ length }, (_, i) => (i * 7919) >> 3);
+    const text = `\n${Buffer.from(wanted).toString("base64").replace(/.{76}/g, "$&\n")}\n`;
+    assert.ok(Buffer.from(bytesBySlices(text)).equals(wanted), `${length} bytes`);
+    assert.ok(Buffer.from(bytesFromBase64(text, "x")).equals(wanted), `${length} bytes`);
+  }
+  assert.throws(() => bytesFromBase64("a*b!", "x"), InputError);
+});
+
+test("a hundred megabytes of base64 are no more than that in memory", () => {
+  const text = "QUJD".repeat(2 ** 25);
+  assert.equal(bytesBySlices(text).length, 3 * 2 ** 25);
+});
+
+test("bytes are copied for a loader only where they are part of something larger", () => {
+  const whole = new Uint8Array(8);
+  assert.equal(wholeBuffer(whole), whole.buffer);
+  assert.equal(wholeBuffer(whole.subarray(2, 5)).byteLength, 3);
+});
+
+test("files in a folder are known by their names", () => {
+  assert.deepEqual(["a.GLB", "b.safetensors.zst", "c.txt", "glb"].map(isKnownName), [
+    true,
+    true,
+    false,
+    false,
+  ]);
 });
 
 test("a panorama is twice as wide as high", () => {
@@ -115,4 +146,15 @@ test("a Radiance picture that is cut anywhere is refused", () => {
   for (let n = 0; n < whole.length; n += 1) {
     assert.throws(() => readRadianceHdr(whole.subarray(0, n), "p.hdr"), InputError, `cut at ${n}`);
   }
+});
+
+test("a few bytes that promise a huge picture are refused before room is made for it", () => {
+  const text = "#?RADIANCE\n\n-Y 4096 +X 32767\n";
+  assert.throws(() => readRadianceHdr(bytes(text), "p.hdr"), /more pixels/);
+});
+
+test("a picture of one colour, packed as well as can be, is read", () => {
+  const row = [2, 2, 1, 0, ...[0, 0, 0, 0].flatMap((value) => [255, value, 255, value, 130, value])];
+  const file = Uint8Array.of(...bytes("#?RADIANCE\n\n-Y 2 +X 256\n"), ...row, ...row);
+  assert.equal(readRadianceHdr(file, "p.hdr").width, 256);
 });

@@ -37,6 +37,19 @@ test("a state as it is by default needs no URL", () => {
   assert.deepEqual(readState("", ""), DEFAULTS);
 });
 
+test("what was said before the hash can be taken back behind it", () => {
+  const search = "?left=lightmap&tone=aces&camera=0,0,0,0,0,1&place=1,2,3&env=sky.hdr&panel=0&ev=2";
+  const base = readState(search, "");
+  const hash = writeState(DEFAULTS, base);
+  assert.deepEqual(readState(search, hash), DEFAULTS);
+  assert.equal(writeState(base, base), "");
+  assert.deepEqual(readState(search, writeState(OTHERWISE, base)), OTHERWISE);
+});
+
+test("nonsense behind the hash leaves what was said before it", () => {
+  assert.equal(readState("?tone=aces", "#tone=pink").tone, "aces");
+});
+
 test("what stands behind the hash wins over the query", () => {
   assert.equal(readState("?left=lightmap&tone=aces", "#left=probes").left, "probes");
   assert.equal(readState("?left=lightmap&tone=aces", "#left=probes").tone, "aces");

@@ -24,6 +24,18 @@ const EXR_MAGIC = [0x76, 0x2f, 0x31, 0x01];
 const PNG_MAGIC = [0x89, 0x50, 0x4e, 0x47];
 const JPEG_MAGIC = [0xff, 0xd8, 0xff];
 
+/** Bytes as three.js' loaders want them; copied only where they are part of something larger. */
+export function wholeBuffer(bytes: Uint8Array): ArrayBuffer {
+  const isWhole = bytes.byteLength === bytes.buffer.byteLength && bytes.buffer instanceof ArrayBuffer;
+  return isWhole ? (bytes.buffer as ArrayBuffer) : bytes.slice().buffer;
+}
+
+/** Whether a file's name is that of something to open, as far as names tell. */
+export function isKnownName(name: string): boolean {
+  const lower = name.toLowerCase();
+  return ACCEPTED.split(",").some((suffix) => lower.endsWith(suffix));
+}
+
 /** Radiance files are skies or renders: only their shape tells, see `isPanorama`. */
 export function kindOf({ name, bytes }: NamedFile): FileKind {
   const lower = name.toLowerCase();

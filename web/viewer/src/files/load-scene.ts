@@ -5,7 +5,7 @@ import { MeshoptDecoder } from "three/addons/libs/meshopt_decoder.module.js";
 import { type GLTF, GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { LoadingManager } from "three/webgpu";
 import { type Model, makeModel } from "../scene/model.js";
-import { fileName, type NamedFile } from "./kinds.js";
+import { fileName, type NamedFile, wholeBuffer } from "./kinds.js";
 
 const GLB_MAGIC = 0x67;
 /** Extensions that need decoders which we leave out, as each weighs more than all of our own code. */
@@ -50,8 +50,7 @@ export async function loadScene(
 }
 
 function parse(loader: GLTFLoader, { bytes }: NamedFile): Promise<GLTF> {
-  const own = bytes.slice().buffer;
-  return loader.parseAsync(own, "");
+  return loader.parseAsync(wholeBuffer(bytes), "");
 }
 
 /** Finds files by their names in place of the network. */

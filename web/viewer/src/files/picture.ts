@@ -13,7 +13,7 @@ import {
   RGBAFormat,
   type Texture,
 } from "three/webgpu";
-import type { NamedFile } from "./kinds.js";
+import { type NamedFile, wholeBuffer } from "./kinds.js";
 import { readRadianceHdr } from "./radiance.js";
 import { linearFromSrgb, unshoulder } from "./shoulder.js";
 
@@ -56,7 +56,11 @@ export async function readPicture(file: NamedFile, ev?: number): Promise<Picture
   const decode =
     ev === undefined ? linearFromSrgb : (value: number) => unshoulder(linearFromSrgb(value)) / 2 ** ev;
   const table = Float32Array.from({ length: 256 }, (_, code) => decode(code / 255));
-  const linear = Float32Array.from(rgba, (code, i) => (i % 4 === 3 ? code / 255 : (table[code] ?? 0)));
+  const linear = new Float32Array(rgba.length);
+  for (let i = 0; i < rgba.length; i += 1) {
+    const code = rgba[i] ?? 0;
+    linear[i] = i % 4 === 3 ? code / 255 : (table[code] ?? 0);
+  }
   return {
     name: file.name,
     width,
@@ -89,7 +93,7 @@ function parseExr(name: string, bytes: Uint8Array): { width: number; height: num
   const loader = new EXRLoader();
   loader.type = FloatType;
   try {
-    const parsed = loader.parse(bytes.slice().buffer) as {
+    const parsed = loader.parse(wholeBuffer(bytes)) as {
       width: number;
       height: number;
       data: Float32Array;
@@ -112,7 +116,10 @@ function floatTexture(linear: Float32Array, width: number, height: number): Text
 /** A panorama as three.js wants environments: half floats, which every GPU filters. */
 export function environmentOf({ texture, width, height }: Picture): Texture {
   const linear = (texture.image as { data: Float32Array }).data;
-  const halves = Uint16Array.from(linear, (value) => DataUtils.toHalfFloat(Math.min(value, LARGEST_HALF)));
+  const halves = new Uint16Array(linear.length);
+  for (let i = 0; i < linear.length; i += 1) {
+    halves[i] = DataUtils.toHalfFloat(Math.min(linear[i] ?? 0, LARGEST_HALF));
+  }
   const environment = new DataTexture(halves, width, height, RGBAFormat, HalfFloatType);
   environment.mapping = EquirectangularReflectionMapping;
   environment.colorSpace = LinearSRGBColorSpace;

@@ -14,6 +14,7 @@ export interface RadiancePicture {
 const MOST_PIXELS = 2 ** 27;
 /** Where rows were packed by runs, and how long a row may then be. */
 const [PACKED_MARK, SHORTEST, LONGEST] = [2, 8, 0x7fff];
+const LONGEST_RUN = 127;
 const CUT = "The file is damaged or was cut short.";
 
 /**
@@ -22,6 +23,8 @@ const CUT = "The file is damaged or was cut short.";
  */
 export function readRadianceHdr(bytes: Uint8Array, where: string): RadiancePicture {
   const { width, height, end, factor } = readHeader(bytes, where);
+  const isPossible = bytes.length - end >= height * leastBytesARow(width);
+  expect(isPossible, "expected more pixels, found the end", where, CUT); // before so much memory is taken
   const linear = new Float32Array(4 * width * height);
   const row = new Uint8Array(4 * width);
   let at = end;
@@ -47,6 +50,12 @@ function readHeader(
   const factor = exposures.reduce((product, [, value]) => product / Number(value), 1);
   expect(factor > 0 && Number.isFinite(factor), "expected exposures above 0", where);
   return { width, height, end: size.index + size[0].length, factor };
+}
+
+/** Of one colour alone: four planes of the longest runs that there are. */
+function leastBytesARow(width: number): number {
+  const isPackable = width >= SHORTEST && width <= LONGEST;
+  return isPackable ? 4 + 4 * 2 * Math.ceil(width / LONGEST_RUN) : 4 * width;
 }
 
 /** Rows in four planes: red, green, blue, exponents. */

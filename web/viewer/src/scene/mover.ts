@@ -56,11 +56,13 @@ export class Mover implements Movable {
   /** @param size of the scene, metres */
   show(shape: ObjectShape, size: number): void {
     this.mesh.visible = shape !== "off";
-    if (shape === "off" || this.mesh.userData.shape === shape) return;
+    if (shape === "off") return;
+    this.mesh.scale.setScalar(SIZE * size);
+    this.mesh.updateMatrixWorld();
+    if (this.mesh.userData.shape === shape) return;
     this.mesh.geometry.dispose();
     this.mesh.geometry = SHAPES[shape]();
     this.mesh.userData.shape = shape;
-    this.mesh.scale.setScalar(SIZE * size);
   }
 
   get place(): Place {

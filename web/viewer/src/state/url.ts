@@ -1,6 +1,6 @@
 /**
  * State in the URL: `?left=lightmap&right=field:0&compare=split` to begin with, then `#…` with the same keys,
- * so that a link shows again what its sender saw. What is as it would be anyway is left out.
+ * so that a link shows again what its sender saw. What is as it would be without is left out.
  */
 import { type Pose, readPose, writePose } from "../camera/pose.js";
 import {
@@ -18,24 +18,31 @@ import {
   type ViewerState,
 } from "./state.js";
 
-/** How one value is written; `read` gives undefined for what makes no sense. */
+/** For text that is no value. */
+const NONSENSE = Symbol("nonsense");
+
+/** How one value is written. */
 interface Codec<T> {
-  read(text: string): T | undefined;
+  read(text: string): T | typeof NONSENSE;
   write(value: T): string;
 }
 
 const TEXT: Codec<string> = { read: (text) => text, write: (value) => value };
 const SWITCH: Codec<boolean> = {
-  read: (text) => (text === "1" ? true : text === "0" ? false : undefined),
+  read: (text) => (text === "1" ? true : text === "0" ? false : NONSENSE),
   write: (value) => (value ? "1" : "0"),
 };
-const POSE: Codec<Pose | undefined> = { read: readPose, write: (pose) => (pose ? writePose(pose) : "") };
+/** Nothing at all is a value here: the scene's own camera, an object's own place. */
+const POSE: Codec<Pose | undefined> = {
+  read: (text) => (text === "" ? undefined : (readPose(text) ?? NONSENSE)),
+  write: (pose) => (pose ? writePose(pose) : ""),
+};
 const PLACE: Codec<Place | undefined> = {
-  read: (text) => numbers(text, 3) as Place | undefined,
+  read: (text) => (text === "" ? undefined : ((numbers(text, 3) as Place | undefined) ?? NONSENSE)),
   write: (place) => place?.map((x) => short(x)).join(",") ?? "",
 };
 const EXPOSURE: Codec<ViewerState["ev"]> = {
-  read: (text) => (text === "auto" || text === "file" ? text : number(text, -30, 30)),
+  read: (text) => (text === "auto" || text === "file" ? text : (number(text, -30, 30) ?? NONSENSE)),
   write: (ev) => (typeof ev === "number" ? short(ev) : ev),
 };
 
@@ -71,14 +78,7 @@ const ALIASES: Readonly<Record<string, string>> = { source: "left", exposure: "e
  * @param defaults what holds where neither says anything
  */
 export function readState(search: string, hash: string, defaults = DEFAULTS): ViewerState {
-  const wanted = pairs(search, hash);
-  const state: Record<string, unknown> = { ...defaults };
-  for (const [name, [key, codec]] of Object.entries(CODECS)) {
-    const text = wanted.get(key);
-    const value = text === undefined ? undefined : (codec as Codec<unknown>).read(text);
-    if (value !== undefined) state[name] = value;
-  }
-  return state as unknown as ViewerState;
+  return merged(merged(defaults, search), hash.replace(/^#/, ""));
 }
 
 /** The options of the page, which stand before `#`. */
@@ -88,18 +88,22 @@ export function readPageOptions(search: string): PageOptions {
   const pose = wanted.get("pose") ?? (/^\d+$/.test(view) ? view : undefined);
   return {
     kiosk: wanted.get("kiosk") === "1",
-    backend: oneOf(BACKENDS).read(wanted.get("renderer") ?? "") ?? "auto",
+    backend: BACKENDS.find((backend) => backend === wanted.get("renderer")) ?? "auto",
     pose: pose === undefined ? undefined : number(pose, 0, 1e6),
   };
 }
 
-/** What `readState` reads back; empty for the defaults. */
-export function writeState(state: ViewerState): string {
+/**
+ * What `readState` reads back.
+ *
+ * @param base what holds without it: what the part before `#` says; it needs no words
+ */
+export function writeState(state: ViewerState, base = DEFAULTS): string {
   const parts: string[] = [];
   for (const [name, [key, codec]] of Object.entries(CODECS)) {
     const value = state[name as keyof ViewerState];
     const text = (codec as Codec<unknown>).write(value);
-    if (text !== (codec as Codec<unknown>).write(DEFAULTS[name as keyof ViewerState])) {
+    if (text !== (codec as Codec<unknown>).write(base[name as keyof ViewerState])) {
       parts.push(`${key}=${encodeURIComponent(text).replace(/%2C/g, ",").replace(/%3A/g, ":")}`);
     }
   }
@@ -111,17 +115,24 @@ export function short(value: number): string {
   return String(Number(value.toPrecision(5)));
 }
 
-function pairs(search: string, hash: string): Map<string, string> {
-  const all = [...new URLSearchParams(search), ...new URLSearchParams(hash.replace(/^#/, ""))];
-  return new Map(all.map(([key, value]) => [ALIASES[key] ?? key, value]));
+/** A state with what `text` says about it. */
+function merged(base: ViewerState, text: string): ViewerState {
+  const wanted = new Map([...new URLSearchParams(text)].map(([key, value]) => [ALIASES[key] ?? key, value]));
+  const state: Record<string, unknown> = { ...base };
+  for (const [name, [key, codec]] of Object.entries(CODECS)) {
+    const word = wanted.get(key);
+    const value = word === undefined ? NONSENSE : (codec as Codec<unknown>).read(word);
+    if (value !== NONSENSE) state[name] = value;
+  }
+  return state as unknown as ViewerState;
 }
 
 function oneOf<T extends string>(choices: readonly T[]): Codec<T> {
-  return { read: (text) => choices.find((choice) => choice === text), write: (value) => value };
+  return { read: (text) => choices.find((choice) => choice === text) ?? NONSENSE, write: (value) => value };
 }
 
 function within(lowest: number, highest: number): Codec<number> {
-  return { read: (text) => number(text, lowest, highest), write: short };
+  return { read: (text) => number(text, lowest, highest) ?? NONSENSE, write: short };
 }
 
 function number(text: string, lowest: number, highest: number): number | undefined {

@@ -1,6 +1,7 @@
 /** All that is on the page, and what its buttons do. */
 import type { App } from "../app.js";
-import { acceptDrops, pickFiles, readFiles } from "../files/drop.js";
+import { acceptDrops, pickFiles, type ReadFiles } from "../files/drop.js";
+import type { ViewerState } from "../state/state.js";
 import { writeState } from "../state/url.js";
 import { bar } from "./bar.js";
 import { el } from "./dom.js";
@@ -12,18 +13,21 @@ import { problems } from "./problems.js";
 import { splitter } from "./splitter.js";
 import { welcome } from "./welcome.js";
 
-export function buildPage(app: App): void {
+/** How long a browser may take to begin with a download. */
+const DOWNLOAD_MS = 60_000;
+
+/** @param base what the address says before `#` */
+export function buildPage(app: App, base: ViewerState): void {
   const { state, status, options, host } = app;
   const help = helpDialog();
   const toast = el("div", { class: "toast", role: "status" });
-  const openFiles = (): void => pickFiles((files) => void openAll(app, files));
+  const openFiles = (): void => pickFiles((read) => openAll(app, read));
   const actions = {
     openFiles,
-    openScene: (index: number) => state.set({ scene: String(index), camera: undefined }),
-    savePicture: () => void savePicture(app).then(() => say(toast, "Picture saved")),
-    copyLink: () =>
-      void copyLink(app).then((done) => say(toast, done ? "Link copied" : "The address is the link")),
-    fullScreen: () => void toggleFullScreen(),
+    openScene: (index: number) => state.set({ scene: String(index), camera: undefined, place: undefined }),
+    savePicture: () => tell(toast, savePicture(app), "Picture saved", "There is no picture to save"),
+    copyLink: () => tell(toast, copyLink(app, base), "Link copied", "The address is the link"),
+    fullScreen: () => tell(toast, toggleFullScreen(), "", "The browser refuses to fill the screen"),
     help: () => (help.open ? help.close() : help.showModal()),
     togglePanel: () => state.set({ panel: !state.value.panel }),
     home: () => app.home(),
@@ -41,36 +45,36 @@ export function buildPage(app: App): void {
     ({ panel: isOpen }) => isOpen,
     (isOpen) => document.body.classList.toggle("with-panel", isOpen),
   );
-  acceptDrops(document.body, (files) => void openAll(app, files));
+  acceptDrops(document.body, (read) => openAll(app, read));
   if (!options.kiosk) listenToKeys(state, status, actions);
 }
 
-async function openAll(app: App, files: readonly File[]): Promise<void> {
-  app.status.set({ problems: [] });
-  await app.session.open(await readFiles(files));
-  await app.settled();
+function openAll({ session }: App, read: ReadFiles): void {
+  void session.open(read);
 }
 
 async function savePicture(app: App): Promise<void> {
   const url = URL.createObjectURL(await app.picture());
   const name = (app.status.value.model?.name ?? "irradia").replace(/\.\w+$/, "");
   el("a", { href: url, download: `${name}.png` }).click();
-  URL.revokeObjectURL(url);
+  setTimeout(() => URL.revokeObjectURL(url), DOWNLOAD_MS);
 }
 
-async function copyLink({ state }: App): Promise<boolean> {
-  const url = `${location.href.split("#")[0]}#${writeState(state.value)}`;
-  try {
-    await navigator.clipboard.writeText(url);
-    return true;
-  } catch {
-    return false;
-  }
+async function copyLink({ state }: App, base: ViewerState): Promise<void> {
+  await navigator.clipboard.writeText(`${location.href.split("#")[0]}#${writeState(state.value, base)}`);
 }
 
 async function toggleFullScreen(): Promise<void> {
   if (document.fullscreenElement) await document.exitFullscreen();
   else await document.documentElement.requestFullscreen();
+}
+
+/** Says what became of something. */
+function tell(toast: HTMLElement, work: Promise<void>, done: string, failed: string): void {
+  work.then(
+    () => done && say(toast, done),
+    () => say(toast, failed),
+  );
 }
 
 function say(toast: HTMLElement, text: string): void {

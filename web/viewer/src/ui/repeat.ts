@@ -7,10 +7,11 @@ import { readState, writeState } from "../state/url.js";
 /** Browsers refuse more than a few changes of the address a second. */
 const QUIET_MS = 150;
 
-export function repeatInUrl(state: Store<ViewerState>, status: Store<Status>): void {
+/** @param base what the address says before `#` */
+export function repeatInUrl(state: Store<ViewerState>, status: Store<Status>, base: ViewerState): void {
   let timer: ReturnType<typeof setTimeout> | undefined;
   const write = (): void => {
-    const hash = `#${writeState(state.value)}`;
+    const hash = `#${writeState(state.value, base)}`;
     if (hash !== location.hash)
       history.replaceState(null, "", hash === "#" ? location.pathname + location.search : hash);
   };
@@ -18,7 +19,7 @@ export function repeatInUrl(state: Store<ViewerState>, status: Store<Status>): v
     clearTimeout(timer);
     timer = setTimeout(write, QUIET_MS);
   });
-  window.addEventListener("hashchange", () => state.set(readState(location.search, location.hash)));
+  window.addEventListener("hashchange", () => state.set(readState("", location.hash, base)));
   status.subscribe(tell);
   tell(status.value);
 }
