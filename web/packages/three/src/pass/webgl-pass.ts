@@ -72,7 +72,7 @@ class WebGLPassDrawer implements PassDrawer<WebGLRenderTarget> {
   readonly isBottomUp = true;
   readonly #renderer: WebGLRenderer;
   readonly #camera = new Camera();
-  readonly #stages = new WeakMap<LightShader, Map<ScreenStage, Stage>>();
+  readonly #stages = new Map<LightShader, Map<ScreenStage, Stage>>();
 
   constructor(renderer: WebGLRenderer) {
     this.#renderer = renderer;
@@ -130,7 +130,8 @@ class WebGLPassDrawer implements PassDrawer<WebGLRenderTarget> {
   }
 
   dispose(): void {
-    for (const stage of this.#stages.values()) stage.mesh.material.dispose();
+    const stages = [...this.#stages.values()].flatMap((ofLight) => [...ofLight.values()]);
+    for (const { mesh } of stages) mesh.material.dispose();
     this.#stages.clear();
   }
 

@@ -48,7 +48,7 @@ interface Stage {
 
 class WebGPUPassDrawer implements PassDrawer<RenderTarget> {
   readonly #renderer: WebGPURenderer;
-  readonly #stages = new WeakMap<LightShader, Map<ScreenStage, Stage>>();
+  readonly #stages = new Map<LightShader, Map<ScreenStage, Stage>>();
 
   constructor(renderer: WebGPURenderer) {
     this.#renderer = renderer;
@@ -97,7 +97,8 @@ class WebGPUPassDrawer implements PassDrawer<RenderTarget> {
   }
 
   dispose(): void {
-    for (const stage of this.#stages.values()) stage.quad.material.dispose();
+    const stages = [...this.#stages.values()].flatMap((ofLight) => [...ofLight.values()]);
+    for (const { quad } of stages) (quad.material as Material).dispose();
     this.#stages.clear();
   }
 

@@ -12,16 +12,17 @@ interface Coloured {
 
 /** Multiplies a light by a channel of the mask, on surfaces with a lightmap. Gives what undoes it. */
 export function shadowLight(light: Light, mask: DataArrayTexture, channel: number): () => void {
+  let isMasked = true;
   const share = Fn((builder: NodeBuilder) => {
-    if (!builder.geometry.hasAttribute(LIGHTMAP_ATTRIBUTES.uv)) return float(1);
+    if (!isMasked || !builder.geometry.hasAttribute(LIGHTMAP_ATTRIBUTES.uv)) return float(1);
     const { lightmapUv, page } = lightmapPlace();
     const texel = texture(mask, lightmapUv).depth(page.toInt()).level(float(0)) as unknown as Node<"vec4">;
     return [texel.r, texel.g, texel.b, texel.a][channel] ?? float(1);
   });
   const coloured = light as Light & Partial<Coloured>;
   const undo = () => {
+    isMasked = false; // three.js' own node of the light keeps the colour that it was made with
     delete coloured.colorNode;
-    light.dispose(); // three.js' node of the light keeps the colour that it was made with
   };
   if ("isSpotLight" in light) {
     // three.js asks functions, too, for a key.
