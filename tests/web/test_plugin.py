@@ -75,10 +75,13 @@ JOBS: dict[str, tuple[str, str, dict[str, dict[str, Any]]]] = {
             "void": {},
             "lit": {"ball": BALL},
             "by probes": {"dynamicSource": "probes"},
-            "unlit": {"dynamicSource": None},
+            "by probes in live lights": {"use": "field"},
+            "in live lights": {"dynamicSource": "field"},
+            "unlit": {"use": "lightmap", "dynamicSource": None},
             "disposed": {"dispose": True},
         },
     ),
+    "ball beside map": ("direct", "irradia", {"lit": {"use": "field", "ball": BALL}}),
     "below": (
         "plain",
         "irradia",
@@ -275,13 +278,29 @@ def test_a_map_of_direct_light_is_added_to_a_field_of_indirect_light(shots, repo
 
 def test_what_moves_is_lit_by_the_dynamic_source(shots) -> None:
     void, lit, by_probes, unlit = (
-        shots["ball"][name].pixels for name in JOBS["ball"][2] if name != "disposed"
+        shots["ball"][name].pixels for name in ("void", "lit", "by probes", "unlit")
     )
     ball = (void.max(axis=-1) == 0.0) & (lit.min(axis=-1) > 0.05)
     assert ball.sum() > 50
     assert by_probes[ball].min() > 0.05
     assert np.abs(lit - by_probes)[ball].max() > 0.01
     assert unlit[ball].max() == 0.0
+
+
+def test_what_moves_has_each_first_bounce_once_wherever_surfaces_have_it_from(shots) -> None:
+    """From live lights, from the lightmap, or from a map of direct light; there by lights of its own."""
+    ball, beside_map = shots["ball"], shots["ball beside map"]["lit"]
+    where = (ball["void"].pixels.max(axis=-1) == 0.0) & (ball["lit"].pixels.min(axis=-1) > 0.05)
+    in_live_lights = ball["in live lights"].pixels[where]
+    assert [sum(shot.told["shining"]) for shot in (ball["in live lights"], ball["lit"], beside_map)] == [
+        4,
+        0,
+        0,
+    ]
+    for shot in (ball["lit"], beside_map):
+        np.testing.assert_allclose(shot.pixels[where], in_live_lights, rtol=1e-4, atol=CLOSE)
+    taken_away = ball["by probes in live lights"].pixels[where]
+    np.testing.assert_allclose(taken_away, ball["by probes"].pixels[where], rtol=1e-4, atol=CLOSE)
 
 
 def test_texels_show_their_own_validity_unmixed(shots) -> None:
