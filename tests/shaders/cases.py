@@ -55,6 +55,7 @@ class Case:
         view: The view that is asked in place of the light.
         max_uniform_bytes: The device's; constants go to a texture where they are more.
         max_size: The device's largest side of a texture; longer lists go on in further layers.
+        precision: Of a field's perceptron: ``float`` or ``half``.
         everywhere: Whether GLSL and HLSL are asked on lavapipe too, not just WGSL there and GLSL in WebGL2.
     """
 
@@ -66,11 +67,13 @@ class Case:
     view: str | None = None
     max_uniform_bytes: int | None = None
     max_size: int | None = None
+    precision: str = "float"
     everywhere: bool = True
 
     def job(self) -> dict[str, Any]:
         """For web/checks/shader-cases.ts."""
         job = {"name": self.name, "file": str(self.file), "source": self.source}
+        job["precision"] = self.precision
         limits = {"maxUniformBytes": self.max_uniform_bytes, "maxSize": self.max_size}
         return job | {name: limit for name, limit in limits.items() if limit is not None}
 

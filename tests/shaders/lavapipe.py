@@ -38,7 +38,7 @@ def spirv(source: str, stage: str, folder: Path, name: str) -> bytes:
         pytest.fail(f"glslangValidator is missing: {SETUP}")
     text, binary = folder / f"{name}.{stage}", folder / f"{name}.{stage}.spv"
     text.write_text(source, encoding="utf-8")
-    language = ["-D", "-e", "main"] if stage == "hlsl" else []
+    language = ["-D", "-e", "main", "--hlsl-enable-16bit-types"] if stage == "hlsl" else []
     command = [program, *language, "-V", "--target-env", "vulkan1.1", "-S", "comp", "-o", binary, text]
     done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
     if done.returncode:
@@ -60,7 +60,7 @@ class Lavapipe:
         if not found:
             pytest.fail(f"lavapipe is missing: {SETUP}")
         self._wgpu = wgpu
-        self._device = found[0].request_device_sync()
+        self._device = found[0].request_device_sync(required_features=["shader-f16"])
         self._pipelines: dict[str | bytes, tuple] = {}
 
     def ask(self, shader: Shader, code: str | bytes, questions: np.ndarray) -> np.ndarray:

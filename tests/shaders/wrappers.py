@@ -31,7 +31,7 @@ def wgsl(shader: Shader, view: str | None) -> str:
         array = f"array<vec4f, {uniform['nVec4']}>"
         lines.append(f"@group(0) @binding({binding}) var<uniform> {uniform['name']}: {array};")
     call = shader.call(view, lambda i: f"questions[id.x][{i}]")
-    return "\n".join(
+    return shader.json["directives"] + "\n".join(
         [
             *lines,
             shader.text("wgsl"),

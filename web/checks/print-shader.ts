@@ -1,19 +1,21 @@
 /**
  * Writes all that a field's shader is, for whoever runs it outside of a browser.
  *
- *     node print-shader.js FIELD LANGUAGE OUT [MAX_UNIFORM_BYTES]
+ *     node print-shader.js FIELD LANGUAGE OUT [MAX_UNIFORM_BYTES [PRECISION]]
  *
  * LANGUAGE is wgsl, glsl, hlsl or msl. `OUT/shader.LANGUAGE` is the text, `OUT/NAME.bin` what to bind as NAME (little-endian), `OUT/shader.json` the rest;
- * that is printed too.
+ * that is printed too. PRECISION is float or half; with half floats WGSL begins with its directive.
  */
 import { mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join, parse } from "node:path";
 import { fileURLToPath } from "node:url";
 import {
+  directives,
   type Field,
   fieldShader,
   PIECES,
   type PieceLanguage,
+  type Precision,
   readField,
   readFieldBin,
   WEBGPU_LIMITS,
@@ -53,11 +55,14 @@ async function print(
   language: PieceLanguage,
   out: string,
   maxUniformBytes: number,
+  precision: Precision,
 ): Promise<void> {
-  const shader = fieldShader(await readFile(path), { ...WEBGPU_LIMITS, maxUniformBytes });
+  const field = await readFile(path);
+  const shader = fieldShader(field, { ...WEBGPU_LIMITS, maxUniformBytes }, { precision });
   mkdirSync(out, { recursive: true });
   const helpers = addPieces(language);
-  writeFileSync(join(out, `shader.${language}`), helpers + shader.text(language as "wgsl"));
+  const before = language === "wgsl" ? directives(shader) : helpers;
+  writeFileSync(join(out, `shader.${language}`), before + shader.text(language as "wgsl"));
   const textures = shader.textures.map(({ name, plan, access, data }) => {
     writeFileSync(join(out, `${name}.bin`), raw(data));
     return { name, access, file: `${name}.bin`, ...plan };
@@ -66,11 +71,16 @@ async function print(
     writeFileSync(join(out, `${name}.bin`), raw(values));
     return { name, file: `${name}.bin`, vec4s: values.length / 4 };
   });
-  const { entry, inputs, quantity, cost, views } = shader;
-  const json = JSON.stringify({ entry, inputs, quantity, cost, views, textures, uniforms }, null, 1);
+  const { entry, inputs, requires = [], quantity, cost, views } = shader;
+  const json = JSON.stringify(
+    { entry, inputs, requires, quantity, cost, views, textures, uniforms },
+    null,
+    1,
+  );
   writeFileSync(join(out, "shader.json"), json);
   console.log(json);
 }
 
-const [path = "", language = "wgsl", out = ".", maxUniformBytes = "65536"] = process.argv.slice(2);
-await print(path, language as PieceLanguage, out, Number(maxUniformBytes));
+const [path = "", language = "wgsl", out = ".", maxUniformBytes = "65536", precision = "float"] =
+  process.argv.slice(2);
+await print(path, language as PieceLanguage, out, Number(maxUniformBytes), precision as Precision);

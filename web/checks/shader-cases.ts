@@ -10,10 +10,12 @@ import path from "node:path";
 import {
   type BakedLight,
   directionalShader,
+  directives,
   type Field,
   fieldShader,
   type LightShader,
   lightmapShader,
+  type Precision,
   probeShader,
   readBakedGlb,
   readField,
@@ -33,6 +35,8 @@ interface Job {
   readonly source: Source;
   /** Constants become a texture where they have more bytes than a device's uniform block takes. */
   readonly maxUniformBytes?: number;
+  /** Of a field's perceptron; in half precision there is no GLSL. */
+  readonly precision?: Precision;
   /** Lists that are longer than so many rows go on in further layers. */
   readonly maxSize?: number;
 }
@@ -69,7 +73,12 @@ function written(job: Job): object {
     inputs: shader.inputs,
     views: shader.views,
     cost: shader.cost,
-    texts: { wgsl: shader.text("wgsl"), glsl: shader.text("glsl"), hlsl: hlslOf(shader, job) },
+    directives: directives(shader),
+    texts: {
+      wgsl: shader.text("wgsl"),
+      glsl: job.precision === "half" ? "" : shader.text("glsl"),
+      hlsl: hlslOf(shader, job),
+    },
     textures: shader.textures.map(({ name, access, plan, data }) => ({
       name,
       access,
@@ -98,14 +107,14 @@ function hlslOf(shader: LightShader, job: Job): string {
   return readFileSync(new URL("helpers.hlsl", HLSL_FOLDER), "utf8") + shader.text(HLSL);
 }
 
-function shaderOf({ name, file, source, maxUniformBytes, maxSize }: Job): LightShader {
+function shaderOf({ name, file, source, maxUniformBytes, maxSize, precision }: Job): LightShader {
   const bytes = new Uint8Array(readFileSync(file));
   const limits: TextureLimits = {
     ...WEBGL2_LIMITS,
     ...(maxUniformBytes !== undefined && { maxUniformBytes }),
     ...(maxSize !== undefined && { maxSize }),
   };
-  if (source === "field") return fieldShader(fieldOf(file, bytes), limits);
+  if (source === "field") return fieldShader(fieldOf(file, bytes), limits, { precision });
   const baked = readBakedGlb(bytes, options);
   if (!baked) throw new Error(`${name}: no light in ${file}`);
   return bakedShader(baked, source, limits);

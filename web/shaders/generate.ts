@@ -16,7 +16,7 @@ import {
   readPieces,
   stripped,
 } from "./pieces.js";
-import { LANGUAGES, type Language, type Translated, translatePiece } from "./translate.js";
+import { isIn, LANGUAGES, type Language, type Translated, translatePiece } from "./translate.js";
 
 const ROOT = join(dirname(fileURLToPath(import.meta.url)), "../../..");
 const SHADERS = join(ROOT, "shaders");
@@ -29,6 +29,7 @@ function generated(pieces: Pieces): Map<string, string> {
   for (const language of Object.keys(LANGUAGES) as Language[]) {
     const helpers = new Set<string>();
     for (const piece of pieces.values()) {
+      if (!isIn(language, pieces, piece)) continue;
       const translated = inEveryChoice(pieces, piece, language);
       for (const helper of translated.helpers) helpers.add(helper);
       if (language === "glsl") glsl.set(piece.name, translated.text);
@@ -56,6 +57,7 @@ function inEveryChoice(pieces: Pieces, piece: Piece, language: Language): Transl
   for (const choice of openChoices(pieces, piece)) {
     for (const { name } of alternatives(pieces, choice)) {
       const choices: Choices = { [choice]: name };
+      if (!isIn(language, pieces, piece, choices)) continue;
       const { text } = translatePiece(pieces, piece, language, choices);
       if (text !== first.text)
         throw new Error(
@@ -85,9 +87,10 @@ function needsLine({ needs, given }: Piece): string {
 /** The texts that the runtime bundles, without comments. */
 function runtimeModule(pieces: Pieces, glsl: ReadonlyMap<string, string>): string {
   const entries = [...pieces.values()].map(({ name, needs, wgsl }) => {
+    const translated = glsl.get(name);
     const texts = [
       `wgsl: ${JSON.stringify(stripped(wgsl))}`,
-      `glsl: ${JSON.stringify(stripped(glsl.get(name) ?? ""))}`,
+      ...(translated === undefined ? [] : [`glsl: ${JSON.stringify(stripped(translated))}`]),
     ];
     return `  ${JSON.stringify(name)}: {\n    needs: ${JSON.stringify(needs)},\n    ${texts.join(",\n    ")},\n  },\n`;
   });

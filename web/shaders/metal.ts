@@ -8,7 +8,7 @@
 import { bindingsOf } from "./module.js";
 import type { Piece } from "./pieces.js";
 
-const SCALARS: Readonly<Record<string, string>> = { f: "float", u: "uint", i: "int" };
+const SCALARS: Readonly<Record<string, string>> = { f: "float", h: "half", u: "uint", i: "int" };
 
 /** A function's text without what is handed through, and without the structures that wrap arrays. */
 export function asMember(text: string, all: readonly Piece[]): string {
@@ -48,7 +48,7 @@ function privateVariables(wgsl: string): [name: string, type: string][] {
 }
 
 function metalType(type: string): string {
-  const [, size, scalar = ""] = /^vec(\d)([fui])$/.exec(type) ?? [];
+  const [, size, scalar = ""] = /^vec(\d)([fhui])$/.exec(type) ?? [];
   if (size) return `metal::${SCALARS[scalar]}${size}`;
   const simple = ({ f32: "float", u32: "uint", i32: "int" } as Readonly<Record<string, string>>)[type];
   if (!simple) throw new Error(`no type of Metal is known for ${type}`);

@@ -1,5 +1,5 @@
 /** Makes whole modules of pieces, such as compilers take: what is given from outside is declared. */
-import type { Piece } from "./pieces.js";
+import { enabledBy, type Piece } from "./pieces.js";
 
 /** Vec4s of a uniform array in modules that nobody runs. */
 const STUB_VEC4S = 1024;
@@ -21,6 +21,7 @@ export function asModule(pieces: readonly Piece[]): string {
   const bound = given.filter((line) => line.startsWith("var"));
   const functions = given.filter((line) => line.startsWith("fn"));
   return [
+    ...enabledBy(pieces).map((extension) => `enable ${extension};`),
     ...bound.map(
       (line, i) => `@group(0) @binding(${i}) ${line.replace("array<vec4f>", `array<vec4f, ${STUB_VEC4S}>`)};`,
     ),

@@ -9,6 +9,8 @@ export interface Piece {
   readonly needs: readonly string[];
   /** What whoever uses the piece provides: `var texture: type`, `var<uniform> …` or `fn name(…)`. */
   readonly given: readonly string[];
+  /** WGSL's extensions that it uses, such as `f16`. */
+  readonly enables: readonly string[];
   readonly wgsl: string;
   /** Of its functions, constants, structures and private variables. */
   readonly names: readonly string[];
@@ -41,7 +43,7 @@ export function readPiece(name: string, wgsl: string): Piece {
   for (const declared of names) {
     if (!/^irradia_/.test(declared)) throw new Error(`${name}: ${declared} doesn't begin with irradia_`);
   }
-  return { name, needs: list("needs"), given: said("given"), wgsl, names };
+  return { name, needs: list("needs"), given: said("given"), enables: list("enable"), wgsl, names };
 }
 
 /** Files among which a need chooses; one where it is a file's own name. */
@@ -62,6 +64,11 @@ export function inOrder(pieces: Pieces, piece: Piece, choices: Choices = {}): Pi
   };
   visit(piece);
   return [...ordered];
+}
+
+/** Extensions of WGSL that pieces use. */
+export function enabledBy(pieces: readonly Piece[]): string[] {
+  return [...new Set(pieces.flatMap(({ enables }) => enables))];
 }
 
 /** Choices that a piece depends on, directly or not. */

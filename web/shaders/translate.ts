@@ -2,7 +2,7 @@
 import { translate } from "naga-wasm";
 import { asMember, memberConstant, privateMembers } from "./metal.js";
 import { asModule, bindingsOf } from "./module.js";
-import { type Choices, inOrder, type Piece, type Pieces } from "./pieces.js";
+import { type Choices, enabledBy, inOrder, type Piece, type Pieces } from "./pieces.js";
 import { tidy } from "./tidy.js";
 
 /** Generated languages, by the folder and the end of the name of their files. */
@@ -15,6 +15,11 @@ export interface Translated {
   readonly helpers: readonly string[];
 }
 
+/** Whether a language has all that a piece and what it needs use: GLSL ES 3.00 has no half floats. */
+export function isIn(language: Language, pieces: Pieces, piece: Piece, choices: Choices = {}): boolean {
+  return language !== "glsl" || !enabledBy(inOrder(pieces, piece, choices)).includes("f16");
+}
+
 /** Compiles a piece with all that it needs, and takes out what is its own. */
 export function translatePiece(
   pieces: Pieces,
@@ -23,7 +28,7 @@ export function translatePiece(
   choices: Choices,
 ): Translated {
   const all = inOrder(pieces, piece, choices);
-  const whole = named(naga(asModule(all), language), bindingsOf(all));
+  const whole = named(naga(asModule(all), language, enabledBy(all)), bindingsOf(all));
   const helpers: string[] = [];
   const own = language === "msl" ? [privateMembers(piece.wgsl)] : [];
   for (const chunk of topLevel(whole)) {
@@ -35,9 +40,9 @@ export function translatePiece(
   return { text: own.filter((text) => text).join("\n"), helpers };
 }
 
-function naga(source: string, language: Language): string {
-  if (language === "hlsl")
-    return translate({ from: "wgsl", to: "hlsl", source, options: { shaderModel: "5_1" } });
+function naga(source: string, language: Language, enabled: readonly string[]): string {
+  const shaderModel = enabled.includes("f16") ? "6_2" : "5_1";
+  if (language === "hlsl") return translate({ from: "wgsl", to: "hlsl", source, options: { shaderModel } });
   if (language === "msl") return translate({ from: "wgsl", to: "msl", source });
   const flags = { includeUnusedItems: true };
   return translate({

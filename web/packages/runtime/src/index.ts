@@ -38,7 +38,7 @@ export { readFieldBin } from "./formats/field-bin.js";
 export { type ReadFieldOptions, readField } from "./formats/field-safetensors.js";
 export { type LightTexture, readKtx2, type TexelEncoding, texelRgb } from "./formats/ktx2.js";
 export type { UnpackOptions, Unzstd } from "./formats/zstd.js";
-export { type ConstantsPlan, type LayerPlacement, PADDED_WIDTHS } from "./gpu/constants.js";
+export { type ConstantsPlan, type LayerPlacement, PADDED_WIDTHS, type Precision } from "./gpu/constants.js";
 export {
   type EntryLayout,
   type FieldTextures,
@@ -101,16 +101,18 @@ export {
   type ShaderPiece,
 } from "./shaders/compose.js";
 export { directionalShader } from "./shaders/directional-shader.js";
-export { fieldShader } from "./shaders/field-shader.js";
+export { type FieldShaderOptions, fieldShader } from "./shaders/field-shader.js";
 export type {
   LightInput,
   LightShader,
   LightView,
   ShaderCost,
+  ShaderFeature,
   ShaderLanguage,
   ShaderTexture,
   ShaderUniforms,
 } from "./shaders/light-shader.js";
+export { directives } from "./shaders/light-shader.js";
 export { lightmapShader } from "./shaders/lightmap-shader.js";
 export { PIECES } from "./shaders/pieces.js";
 export { type ProbeShaderOptions, probeShader } from "./shaders/probe-shader.js";

@@ -2,6 +2,8 @@
 import { expect } from "./errors.js";
 
 const EXPONENT = 0x7c00;
+/** Larger ones are infinite. */
+export const LARGEST_HALF = 65504;
 
 /** The value of a half float's 16 bits (IEEE 754 binary16). */
 export function halfToNumber(bits: number): number {
@@ -11,6 +13,15 @@ export function halfToNumber(bits: number): number {
   if (exponent === 31) return mantissa ? Number.NaN : sign * Number.POSITIVE_INFINITY;
   if (exponent === 0) return sign * mantissa * 2 ** -24;
   return sign * (1024 + mantissa) * 2 ** (exponent - 25);
+}
+
+/** The bits of the nearest half float; of two as near, the one whose last bit is 0. */
+export function halfFromNumber(value: number): number {
+  const magnitude = Math.abs(value);
+  const sign = value < 0 ? 0x8000 : 0;
+  if (magnitude >= LARGEST_HALF + 16) return sign | EXPONENT;
+  const exponent = Math.max(Math.floor(Math.log2(magnitude)), -14);
+  return sign | (((exponent + 14) << 10) + roundHalfEven(magnitude / 2 ** (exponent - 10)));
 }
 
 /** Half floats as floats, exactly. */

@@ -17,7 +17,7 @@ import { TriPlane } from "../field/encodings/tri-plane.js";
 import { type Field, tensorOf } from "../field/field.js";
 import { bitsPerValue, type Tensor } from "../field/tensor.js";
 import { isPowerOfTwo, product } from "../numbers.js";
-import { type ConstantsPlan, planConstants } from "./constants.js";
+import { type ConstantsPlan, type Precision, planConstants } from "./constants.js";
 import { type EncodingLeaf, encodingLeaves } from "./leaves.js";
 import {
   planList,
@@ -81,7 +81,11 @@ export interface FieldTextures {
  *
  * @throws InputError where the field is too large for the device
  */
-export function planFieldTextures(field: Field, limits: TextureLimits): FieldTextures {
+export function planFieldTextures(
+  field: Field,
+  limits: TextureLimits,
+  precision: Precision = "float",
+): FieldTextures {
   let nScales = 0;
   const leaves = encodingLeaves(field.spec);
   const tables = leaves
@@ -91,7 +95,7 @@ export function planFieldTextures(field: Field, limits: TextureLimits): FieldTex
       for (const placed of table.tensors) nScales += scaleCount(field, placed);
       return table;
     });
-  return { tables, constants: planConstants(field, leaves, tables, nScales, limits) };
+  return { tables, constants: planConstants(field, leaves, tables, nScales, limits, precision) };
 }
 
 function planTable(

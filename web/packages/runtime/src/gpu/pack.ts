@@ -7,6 +7,7 @@ import { type ConstantsPlan, placeOf } from "./constants.js";
 import type { Vec4 } from "./encodings/encoding-shader.js";
 import { encodingShader } from "./encodings/registry.js";
 import type { FieldTextures, TableTexture } from "./field-textures.js";
+import { packHalfWeights } from "./half-weights.js";
 import { encodingLeaves } from "./leaves.js";
 import type { TexturePlan } from "./texture.js";
 
@@ -18,6 +19,8 @@ export interface PackedField {
   readonly tables: readonly Uint32Array[];
   /** All vec4s; as long as the plan's texture where it has one. */
   readonly constants: Float32Array;
+  /** In half precision: words of the plan's weights. */
+  readonly weights?: Uint32Array;
 }
 
 /** Packs a field's weights as its plan says. */
@@ -25,6 +28,7 @@ export function packField(field: Field, plan: FieldTextures): PackedField {
   return {
     tables: plan.tables.map((table) => packTable(field, table)),
     constants: packConstants(field, plan),
+    ...(plan.constants.weights ? { weights: packHalfWeights(field, plan.constants) } : {}),
   };
 }
 
@@ -126,10 +130,11 @@ function header({ spec, frame }: Field, { layers }: ConstantsPlan): Vec4[] {
   ];
 }
 
-function packPerceptron(numbers: Float32Array, field: Field, { layers }: ConstantsPlan): void {
+function packPerceptron(numbers: Float32Array, field: Field, { layers, weights }: ConstantsPlan): void {
   layers.forEach(({ nInputs, nOutputs, blocksIn, firstWeight, firstBias }, i) => {
-    const weight = tensorValues(tensorOf(field, `mlp.${i}.weight`));
     numbers.set(tensorValues(tensorOf(field, `mlp.${i}.bias`)), 4 * firstBias);
+    if (weights) return;
+    const weight = tensorValues(tensorOf(field, `mlp.${i}.weight`));
     for (let row = 0; row < nOutputs; row++) {
       for (let column = 0; column < nInputs; column++) {
         const block = Math.floor(row / 4) * blocksIn + Math.floor(column / 4);

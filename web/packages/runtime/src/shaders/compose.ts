@@ -9,9 +9,12 @@ import { PIECES } from "./pieces.js";
 export type PieceLanguage = ShaderLanguage | "hlsl" | "msl";
 
 /** One file of `shaders/wgsl/`, as the generator leaves it for us. */
-export interface ShaderPiece extends Readonly<Record<ShaderLanguage, string>> {
+export interface ShaderPiece {
   /** Pieces that must come before; a name without a piece is a choice among `NAME-…`. */
   readonly needs: readonly string[];
+  readonly wgsl: string;
+  /** Absent where GLSL ES 3.00 lacks what the piece is about: half floats. */
+  readonly glsl?: string;
   readonly hlsl?: string;
   readonly msl?: string;
 }

@@ -2,7 +2,7 @@
 import { expect } from "../errors.js";
 import type { Field } from "../field/field.js";
 import { layerShapes } from "../field/spec.js";
-import { paddedWidth, placeOf } from "../gpu/constants.js";
+import { type ConstantsPlan, type Precision, paddedWidth, placeOf } from "../gpu/constants.js";
 import { encodingShader } from "../gpu/encodings/registry.js";
 import { type FieldTextures, planFieldTextures } from "../gpu/field-textures.js";
 import { type EncodingLeaf, encodingLeaves } from "../gpu/leaves.js";
@@ -11,7 +11,18 @@ import type { TextureLimits } from "../gpu/texture.js";
 import { composeText, type PieceChoices, type PieceLanguage, type ShaderPart } from "./compose.js";
 import type { LightShader, ShaderCost, ShaderTexture, ShaderUniforms } from "./light-shader.js";
 
+/** How a field is drawn. */
+export interface FieldShaderOptions {
+  /**
+   * `half`: weights are half floats, and so is what hidden layers hand on; sums and outputs are floats. Light is
+   * within 1e-3 of the largest. For WGSL on devices with `shader-f16`, and HLSL and MSL; GLSL ES has no halves.
+   * `float`, by default: exact to 1e-5.
+   */
+  readonly precision?: Precision | undefined;
+}
+
 const CONSTANTS = "irradia_constants";
+const WEIGHTS = "irradia_weights";
 const ENCODE: Readonly<Record<PieceLanguage, string>> = {
   wgsl: "fn irradia_encode(unit: vec3f, normal: vec3f)",
   glsl: "void irradia_encode(vec3 unit, vec3 normal)",
@@ -24,10 +35,14 @@ const MAX_TABLES = 8;
 /**
  * The light of a surface, volume or SH field; weights are packed here, once.
  *
- * @throws InputError where the field is too large for the device
+ * @throws InputError where the field is too large for the device, or a weight for half precision
  */
-export function fieldShader(field: Field, limits: TextureLimits): LightShader {
-  const plan = planFieldTextures(field, limits);
+export function fieldShader(
+  field: Field,
+  limits: TextureLimits,
+  { precision = "float" }: FieldShaderOptions = {},
+): LightShader {
+  const plan = planFieldTextures(field, limits, precision);
   const nTables = plan.tables.length;
   expect(
     nTables <= MAX_TABLES,
@@ -40,6 +55,7 @@ export function fieldShader(field: Field, limits: TextureLimits): LightShader {
     inputs: ["position", "normal"],
     textures,
     uniforms,
+    ...(precision === "half" ? { requires: ["shader-f16"] as const } : {}),
     quantity: field.frame.quantity,
     cost: costOf(field, plan, textures, uniforms),
     views: {
@@ -63,10 +79,13 @@ function bindings(field: Field, plan: FieldTextures): Bindings {
     const data = packed.tables[i] ?? new Uint32Array();
     return { name: `irradia_table${tableSuffix(i)}`, plan: texture, data, access: "load" };
   });
-  const { texture } = plan.constants;
-  if (!texture) return { textures: tables, uniforms: [{ name: CONSTANTS, values: packed.constants }] };
-  const constants: ShaderTexture = { name: CONSTANTS, plan: texture, data: packed.constants, access: "load" };
-  return { textures: [...tables, constants], uniforms: [] };
+  const { texture, weights } = plan.constants;
+  const textures = [...tables];
+  if (weights && packed.weights)
+    textures.push({ name: WEIGHTS, plan: weights, data: packed.weights, access: "load" });
+  if (!texture) return { textures, uniforms: [{ name: CONSTANTS, values: packed.constants }] };
+  textures.push({ name: CONSTANTS, plan: texture, data: packed.constants, access: "load" });
+  return { textures, uniforms: [] };
 }
 
 /** What a table's names have behind `irradia_table`. */
@@ -76,9 +95,18 @@ function tableSuffix(index: number): string {
 
 function textOf(field: Field, plan: FieldTextures, language: PieceLanguage): string {
   const { spec } = field;
+  const isHalf = plan.constants.weights !== undefined;
+  expect(
+    !isHalf || language !== "glsl",
+    "expected WGSL, HLSL or MSL for half precision, found GLSL, whose ES 3.00 has no half floats",
+    "field",
+    'Take precision "float".',
+  );
   const common: PieceChoices = {
     constants: plan.constants.texture ? "constants-texture" : "constants-uniform",
+    perceptron: `perceptron-${isHalf ? "half" : "float"}`,
     width: `width-${paddedWidth(field)}`,
+    halves: `halves-${paddedWidth(field)}`,
     activation: `activation-${spec.activation.replace("_", "-")}`,
     head: `head-${spec.head}`,
   };
@@ -119,6 +147,15 @@ function argumentOf({ input, isCube }: EncodingLeaf): string {
   return isCube ? "normal * 0.5 + 0.5" : "normal";
 }
 
+/** Each texel of weights once, but for those of a first matrix' padding. */
+function weightFetches({ layers, weights }: ConstantsPlan): number {
+  if (!weights) return 0;
+  return layers.reduce(
+    (sum, { nInputs, blocksIn, blocksOut }, i) => sum + ((i ? 4 * blocksIn : nInputs) * blocksOut) / 2,
+    0,
+  );
+}
+
 /** As `query_cost` of the Python package counts. */
 function costOf(
   { spec }: Field,
@@ -135,6 +172,7 @@ function costOf(
   }
   for (const { nInputs, nOutputs } of layerShapes(spec)) flops += 2 * nOutputs * nInputs + nOutputs;
   if (constants.texture) fetches += constants.scalesVec4;
+  fetches += weightFetches(constants);
   const bytes = [
     ...textures.map(({ plan }) => plan.nBytes),
     ...uniforms.map(({ values }) => values.byteLength),

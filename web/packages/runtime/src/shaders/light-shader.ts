@@ -7,6 +7,9 @@
  */
 import type { TexturePlan } from "../gpu/texture.js";
 
+/** What a device must have beside the usual, by WebGPU's names. `shader-f16` goes with `enable f16;`. */
+export type ShaderFeature = "shader-f16";
+
 /** `glsl` is GLSL ES 3.00, made from the WGSL by naga. */
 export type ShaderLanguage = "wgsl" | "glsl";
 
@@ -64,6 +67,11 @@ export interface LightShader {
   readonly inputs: readonly LightInput[];
   readonly textures: readonly ShaderTexture[];
   readonly uniforms: readonly ShaderUniforms[];
+  /**
+   * What its text needs of the device; absent where that is nothing. WGSL's directives come before all else in a
+   * module, so glue writes them: see `directives`.
+   */
+  readonly requires?: readonly ShaderFeature[];
   /** Whether first bounces of live lights are left out of the light. */
   readonly quantity: "full" | "indirect";
   readonly cost: ShaderCost;
@@ -71,4 +79,9 @@ export interface LightShader {
   readonly views: Readonly<Partial<Record<LightView, string>>>;
   /** Functions alone: no declarations of textures and uniforms, no entry point, no version line. */
   text(language: ShaderLanguage): string;
+}
+
+/** What a module in WGSL begins with, for what a shader requires; empty for most. */
+export function directives({ requires = [] }: LightShader): string {
+  return requires.includes("shader-f16") ? "enable f16;\n" : "";
 }

@@ -1,4 +1,4 @@
-// The perceptron. Encodings push their features one by one into the first layer's sums, so there is no array of
+// The perceptron, in floats. Encodings push their features one by one into the first layer's sums, so there is no array of
 // features, and a field may have any number of them. Matrices lie in blocks of 4 × 4, a vec4 a column; those of hidden
 // layers follow one another, each before its biases.
 // needs: constants, width, activation

@@ -1,4 +1,4 @@
-// Generated from shaders/wgsl/perceptron.wgsl by `npm run shaders` in web/: don't edit.
+// Generated from shaders/wgsl/perceptron-float.wgsl by `npm run shaders` in web/: don't edit.
 // needs: constants, width, activation
 
 uvec2 irradia_first_matrix;
