@@ -1,5 +1,5 @@
 /** Puts everything together: a renderer that may come and go, the scene that stays, and the page. */
-import { WEBGL2_LIMITS } from "@irradia/runtime";
+import { InputError, type TextureLimits, WEBGL2_LIMITS } from "@irradia/runtime";
 import { limitsOf } from "@irradia/three/webgpu";
 import type { WebGPURenderer } from "three/webgpu";
 import { framePose, isSamePose, type Pose } from "./camera/pose.js";
@@ -11,6 +11,7 @@ import { startPose } from "./scene/model.js";
 import { Mover } from "./scene/mover.js";
 import { Stage } from "./scene/stage.js";
 import { Session } from "./session.js";
+import { Patience } from "./state/patience.js";
 import type { PageOptions, ViewerState } from "./state/state.js";
 import type { Status } from "./state/status.js";
 import type { Store } from "./state/store.js";
@@ -19,13 +20,17 @@ import { backendOf, makeRenderer } from "./view/renderer.js";
 
 /** More pixels than this per pixel of layout are nothing that eyes see. */
 const MOST_PIXEL_RATIO = 2;
+/** A device that is lost more often than this within this time won't stay. */
+const [MOST_LOSSES, LOSSES_MS] = [3, 30_000];
 
 export class App {
   readonly session: Session;
   readonly #stage = new Stage();
   readonly #rig: Rig;
   readonly #director: Director;
+  readonly #patience = new Patience(MOST_LOSSES, LOSSES_MS);
   #renderer: WebGPURenderer | undefined;
+  #limits: TextureLimits = WEBGL2_LIMITS;
   #frame: Frame | undefined;
   #loop: Loop | undefined;
   #pixelRatio = 1;
@@ -46,7 +51,7 @@ export class App {
       stage: this.#stage,
       mover,
       status,
-      limits: () => (this.#renderer ? limitsOf(this.#renderer) : WEBGL2_LIMITS),
+      limits: () => this.#limits,
       onScene: (isReplacement) => this.#director.welcome(isReplacement),
       onPose: (pose) => this.lookFrom(pose),
       onLight: () => this.#director.resolve(),
@@ -57,9 +62,12 @@ export class App {
   /** Gets a canvas and a GPU; again after the GPU was lost. */
   async start(): Promise<void> {
     const canvas = document.createElement("canvas");
+    canvas.role = "img";
+    canvas.ariaLabel = "The scene in its light";
     const renderer = await makeRenderer(canvas, this.options.backend);
-    renderer.onDeviceLost = () => void this.#recover();
+    renderer.onDeviceLost = () => void this.#recover(renderer);
     this.#renderer = renderer;
+    this.#limits = limitsOf(renderer);
     const frame = new Frame(renderer);
     this.#frame = frame;
     this.host.replaceChildren(canvas);
@@ -165,16 +173,31 @@ export class App {
     this.#loop?.invalidate();
   }
 
-  async #recover(): Promise<void> {
+  async #recover(lost: WebGPURenderer): Promise<void> {
+    if (lost !== this.#renderer) return;
     const message = "The graphics device was lost. Starting again";
     this.status.set({ phase: "loading", message });
-    this.#loop?.stop();
-    this.#frame = undefined;
+    this.#leave(lost);
+    const before = this.#limits;
     try {
+      if (!this.#patience.allows(performance.now())) throw lostTooOften();
       await this.start();
+      if (isLess(this.#limits, before)) void this.session.reopen();
     } catch (error) {
       this.#fail(error);
     }
+  }
+
+  /** Frees what can still be freed of a device that is gone. */
+  #leave(renderer: WebGPURenderer): void {
+    this.#loop?.stop();
+    const frame = this.#frame;
+    this.#frame = this.#renderer = undefined;
+    const free = async (): Promise<void> => {
+      frame?.dispose();
+      await renderer.dispose();
+    };
+    free().catch(() => {}); // then nothing is left to free
   }
 
   #fail(error: unknown): void {
@@ -182,6 +205,16 @@ export class App {
     const { problems } = this.status.value;
     this.status.set({ problems: [...problems, problem], phase: "error", message: problem.finding });
   }
+}
+
+function lostTooOften(): InputError {
+  const finding = `expected a graphics device that stays, lost it more than ${MOST_LOSSES} times in ${LOSSES_MS / 1000} s`;
+  return new InputError(finding, "browser", "Reload the page; a smaller window or scene may help.");
+}
+
+/** Whether what was planned for a device may be too much for this one. */
+function isLess(limits: TextureLimits, before: TextureLimits): boolean {
+  return (Object.keys(limits) as (keyof TextureLimits)[]).some((key) => limits[key] < before[key]);
 }
 
 /** Of the display; another one when a window moves or a page is zoomed, of which nobody tells reliably. */

@@ -105,7 +105,8 @@ export class Director {
     }
     const options = this.#frameOptions();
     const isPair = options && options.compare !== "single";
-    status.set({ difference: isPair ? await frame.measure(options) : undefined });
+    const difference = isPair ? await this.#alone(frame, () => frame.measure(options)) : undefined;
+    status.set({ difference });
     this.#keepPose();
     if (status.value.phase === "loading" && !isOpening) status.set({ phase: "ready", message: "" });
   }
@@ -137,7 +138,23 @@ export class Director {
     const model = this.#options.stage.model;
     if (typeof ev === "number" || !model) return typeof ev === "number" ? ev : 0;
     const isTold = ev === "file" && model.light.baked?.lighting.lightmap !== undefined;
-    return isTold ? model.light.exposure : frame.meter();
+    return isTold ? model.light.exposure : this.#alone(frame, () => frame.meter());
+  }
+
+  /** Measures the scene alone, without what was only put into it; then draws the sides as they were. */
+  #alone<T>(frame: Frame, measure: () => Promise<T>): Promise<T> {
+    const { stage } = this.#options;
+    const { guests } = stage;
+    const options = this.#frameOptions();
+    if (guests.length === 0 || !options) return measure();
+    for (const guest of guests) guest.visible = false;
+    try {
+      frame.drawSides(stage.scene, stage.camera, options);
+      return measure(); // what it reads is on its way before the next picture is drawn
+    } finally {
+      for (const guest of guests) guest.visible = true;
+      frame.drawSides(stage.scene, stage.camera, options);
+    }
   }
 
   #frameOptions(): FrameOptions | undefined {

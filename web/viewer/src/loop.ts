@@ -106,7 +106,7 @@ export class Loop {
     try {
       await this.#options.measure();
     } catch (error) {
-      this.#options.onError(error);
+      if (!this.#isStopped) this.#options.onError(error);
     }
     this.#measured = change;
     this.#isMeasuring = false;

@@ -18,6 +18,7 @@ const state = new Store(readState(location.search, location.hash, defaults));
 const status = new Store(NO_STATUS);
 const host = document.createElement("div");
 host.className = "view";
+host.tabIndex = -1;
 const app = new App(host, state, status, options);
 buildPage(app, base);
 repeatInUrl(state, status, base);

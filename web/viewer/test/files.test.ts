@@ -114,6 +114,8 @@ test("a saved camera is read by rows", () => {
   );
   assert.ok(Math.abs(yfovDeg - 40) < 1e-9);
   assert.throws(() => readCameraFile({ name: "c.json", bytes: bytes("{}") }, 2), InputError);
+  const wide = { name: "c.json", bytes: bytes(JSON.stringify({ world_from_camera, yfov_deg: 180 })) };
+  assert.throws(() => readCameraFile(wide, 2), /170 degrees/);
 });
 
 test("a problem says what was found, where, and what to do", () => {

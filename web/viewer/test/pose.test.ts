@@ -25,6 +25,14 @@ test("a pose comes back from its text", () => {
   assert.ok(back && isSamePose(pose, back));
 });
 
+test("a scene of millimetres is seen from the same place by its link", () => {
+  const small = { min: [0, 0, 0], max: [0.0012, 0.0007, 0.0009] } as const;
+  const pose = framePose(small, 1.5);
+  const back = readPose(writePose(pose));
+  assert.ok(back && isSamePose(pose, back));
+  assert.ok(!isSamePose(pose, { ...pose, eye: [pose.eye[0] + 5e-5, pose.eye[1], pose.eye[2]] }));
+});
+
 test("poses that look elsewhere, from elsewhere, or wider are others", () => {
   const pose = framePose(BOX, 1);
   const [x, y, z] = pose.eye;

@@ -5,13 +5,17 @@ export interface Wish {
   /** Radians to the left, and up. */
   readonly yaw: number;
   readonly pitch: number;
-  /** Right, up and forward, each −1 … 1, times `speed`. */
+  /** Right, up and forward, each −1 … 1, times `speed`: for as long as the frame lasts. */
   readonly move: readonly [number, number, number];
+  /** The same in seconds of moving: how far a hand went, whatever the time it took. */
+  readonly stride: readonly [number, number, number];
   readonly speed: number;
 }
 
 const RAD_PER_PX = 0.004;
-const TOUCH_MOVE_PER_PX = 0.05;
+const STRIDE_S_PER_PX = 0.012;
+/** Of `PointerEvent.button`. */
+const RIGHT_BUTTON = 2;
 const FAST = 4;
 const KEYS: Readonly<Record<string, readonly [axis: 0 | 1 | 2, sign: 1 | -1]>> = {
   KeyW: [2, 1],
@@ -28,12 +32,12 @@ const KEYS: Readonly<Record<string, readonly [axis: 0 | 1 | 2, sign: 1 | -1]>> =
 
 export class Look {
   readonly #held = new Set<string>();
-  readonly #pointers = new Map<number, { x: number; y: number }>();
+  readonly #pointers = new Map<number, { x: number; y: number; strides: boolean }>();
   readonly #end = new AbortController();
   readonly #onInput: () => void;
   #yaw = 0;
   #pitch = 0;
-  #touch: [number, number, number] = [0, 0, 0];
+  #stride: [number, number, number] = [0, 0, 0];
   #isFast = false;
 
   /** @param onInput told whenever there is something to do in the next frame */
@@ -45,6 +49,7 @@ export class Look {
     for (const end of ["pointerup", "pointercancel"] as const) {
       element.addEventListener(end, (event) => this.#pointers.delete(event.pointerId), { signal });
     }
+    element.addEventListener("contextmenu", (event) => event.preventDefault(), { signal });
     window.addEventListener("keydown", (event) => this.#key(event, true), { signal });
     window.addEventListener("keyup", (event) => this.#key(event, false), { signal });
     window.addEventListener("blur", () => this.#held.clear(), { signal });
@@ -57,14 +62,14 @@ export class Look {
 
   /** Hands over what has come together, and begins anew. */
   take(): Wish {
-    const move: [number, number, number] = [...this.#touch];
+    const move: [number, number, number] = [0, 0, 0];
     for (const code of this.#held) {
       const [axis, sign] = KEYS[code] ?? [0, 1];
       move[axis] += sign;
     }
-    const wish = { yaw: this.#yaw, pitch: this.#pitch, move, speed: this.#isFast ? FAST : 1 };
-    [this.#yaw, this.#pitch, this.#touch] = [0, 0, [0, 0, 0]];
-    return wish;
+    const [yaw, pitch, stride] = [this.#yaw, this.#pitch, this.#stride];
+    [this.#yaw, this.#pitch, this.#stride] = [0, 0, [0, 0, 0]];
+    return { yaw, pitch, move, stride, speed: this.#isFast ? FAST : 1 };
   }
 
   dispose(): void {
@@ -72,22 +77,24 @@ export class Look {
   }
 
   #down(element: HTMLElement, event: PointerEvent): void {
-    this.#pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+    const strides = event.button === RIGHT_BUTTON;
+    this.#pointers.set(event.pointerId, { x: event.clientX, y: event.clientY, strides });
     element.setPointerCapture(event.pointerId);
   }
 
-  /** One finger or the mouse looks, two fingers walk. */
+  /** One finger or the mouse looks, two fingers or its right button walk. */
   #move(event: PointerEvent): void {
     const last = this.#pointers.get(event.pointerId);
     if (!last) return;
     const [dx, dy] = [event.clientX - last.x, event.clientY - last.y];
-    this.#pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
-    if (this.#pointers.size === 1) {
+    this.#pointers.set(event.pointerId, { ...last, x: event.clientX, y: event.clientY });
+    if (this.#pointers.size === 1 && !last.strides) {
       this.#yaw += dx * RAD_PER_PX;
       this.#pitch += dy * RAD_PER_PX;
     } else {
-      this.#touch[0] -= dx * TOUCH_MOVE_PER_PX;
-      this.#touch[2] += dy * TOUCH_MOVE_PER_PX;
+      const share = STRIDE_S_PER_PX / this.#pointers.size; // each finger reports its own way
+      this.#stride[0] -= dx * share;
+      this.#stride[2] += dy * share;
     }
     this.#onInput();
   }
@@ -96,7 +103,7 @@ export class Look {
     this.#isFast = event.shiftKey;
     if (!(event.code in KEYS)) return;
     if (!isDown) this.#held.delete(event.code);
-    else if (!isTyping(event)) {
+    else if (!isForControl(event)) {
       this.#held.add(event.code);
       event.preventDefault();
       this.#onInput();
@@ -104,11 +111,13 @@ export class Look {
   }
 }
 
+/** Take letters, and arrows; take arrows alone. */
+const TYPED = "select, textarea, [contenteditable], input:not([type='radio'], [type='range'])";
+const STEPPED = "input, [role='slider']";
+
 /** Whether a key belongs to a control of the page, or to the browser. */
-export function isTyping(event: KeyboardEvent): boolean {
+export function isForControl(event: KeyboardEvent): boolean {
   if (event.ctrlKey || event.metaKey || event.altKey) return true;
-  return (
-    event.target instanceof Element &&
-    event.target.closest("input, select, textarea, [contenteditable]") !== null
-  );
+  if (!(event.target instanceof Element)) return false;
+  return event.target.closest(event.key.startsWith("Arrow") ? `${TYPED}, ${STEPPED}` : TYPED) !== null;
 }

@@ -17,13 +17,17 @@ export interface Box {
 }
 
 export const DEFAULT_YFOV_DEG = 45;
+/** Narrower and wider angles are mistakes. */
+const [LEAST_YFOV_DEG, MOST_YFOV_DEG] = [1, 170];
+/** Enough for a tenth of a millimetre in a kilometre. */
+const DIGITS = 7;
 const RAD = Math.PI / 180;
 /** From where a scene is seen as a whole: front right, a little above. */
 const FRAMING_DIRECTION: Vec3 = [0.55, 0.35, 0.76];
 
 /** `x,y,z,x,y,z,yfovDeg`: eye, target, angle; the last may be left out. */
 export function writePose({ eye, target, yfovDeg }: Pose): string {
-  return [...eye, ...target, yfovDeg].map((x) => String(Number(x.toFixed(4)))).join(",");
+  return [...eye, ...target, yfovDeg].map((x) => String(Number(x.toPrecision(DIGITS)))).join(",");
 }
 
 /** What `writePose` wrote; undefined for anything else. */
@@ -33,8 +37,13 @@ export function readPose(text: string): Pose | undefined {
   if (!isWhole) return undefined;
   const [x = 0, y = 0, z = 0, tx = 0, ty = 0, tz = 0, yfovDeg = DEFAULT_YFOV_DEG] = values;
   const looksSomewhere = x !== tx || y !== ty || z !== tz;
-  if (!looksSomewhere || yfovDeg < 1 || yfovDeg > 170) return undefined;
+  if (!looksSomewhere || !isYfov(yfovDeg)) return undefined;
   return { eye: [x, y, z], target: [tx, ty, tz], yfovDeg };
+}
+
+/** Whether a camera can have this angle of view from bottom to top, degrees. */
+export function isYfov(yfovDeg: number): boolean {
+  return yfovDeg >= LEAST_YFOV_DEG && yfovDeg <= MOST_YFOV_DEG;
 }
 
 /**
@@ -83,7 +92,7 @@ export function isSamePose(one: Pose, other: Pose): boolean {
     Math.hypot(...a.map((x, axis) => x - (b[axis] ?? 0)));
   const reach = Math.hypot(...one.target.map((x, axis) => x - (one.eye[axis] ?? 0)));
   return (
-    apart(one.eye, other.eye) < 1e-3 * reach + 1e-4 &&
+    apart(one.eye, other.eye) <= 1e-3 * reach &&
     apart(direction(one), direction(other)) < 1e-3 &&
     Math.abs(one.yfovDeg - other.yfovDeg) < 0.05
   );

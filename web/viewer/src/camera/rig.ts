@@ -84,11 +84,6 @@ export class Rig {
     return this.#look ? this.#step(this.#look, seconds) : false;
   }
 
-  dispose(): void {
-    this.#orbit?.dispose();
-    this.#look?.dispose();
-  }
-
   #makeOrbit(): OrbitControls {
     const { camera, element, isSmooth, onChange } = this.#options;
     const orbit = new OrbitControls(camera, element);
@@ -102,14 +97,14 @@ export class Rig {
 
   #step(look: Look, seconds: number): boolean {
     const { camera } = this.#options;
-    const { yaw, pitch, move, speed } = look.take();
+    const { yaw, pitch, move, stride, speed } = look.take();
     const turn = new Euler().setFromQuaternion(camera.quaternion, "YXZ");
     turn.set(clampTurn(turn.x + pitch), turn.y + yaw, 0, "YXZ");
     camera.quaternion.setFromEuler(turn);
     const isWalk = this.#navigation === "walk";
-    const pace =
-      speed * seconds * (isWalk ? Math.min(WALKING_M_PER_S, this.#size / 4) : this.#size / CROSSING_S);
-    const way = new Vector3(move[0], isWalk ? 0 : move[1], -move[2]).multiplyScalar(pace);
+    const pace = speed * (isWalk ? Math.min(WALKING_M_PER_S, this.#size / 4) : this.#size / CROSSING_S);
+    const along = (axis: 0 | 1 | 2): number => (move[axis] * seconds + stride[axis]) * pace;
+    const way = new Vector3(along(0), isWalk ? 0 : along(1), -along(2));
     way.applyEuler(isWalk ? new Euler(0, turn.y, 0) : turn);
     camera.position.add(isWalk && this.#ground ? this.#ground.clip(camera.position, way) : way);
     const settles = isWalk && this.#settle(seconds);

@@ -1,6 +1,6 @@
 /** What a page says that it shows: scenes, more fields for them, and path-traced pictures of them. */
 import { InputError } from "@irradia/runtime";
-import { type Pose, poseFromMatrix } from "../camera/pose.js";
+import { isYfov, type Pose, poseFromMatrix } from "../camera/pose.js";
 
 export interface ManifestFile {
   readonly name: string;
@@ -72,9 +72,10 @@ function readFile(entry: Json, where: string, base: string): ManifestFile {
 
 function readCamera(camera: Json): Pose | undefined {
   const matrix = camera.worldFromCamera;
-  const yfovRad = finite(camera.yfovRad);
+  const yfovRad = finite(camera.yfovRad) ?? 0;
   const isWhole = Array.isArray(matrix) && matrix.length === 16 && matrix.every((x) => Number.isFinite(x));
-  return isWhole && yfovRad ? poseFromMatrix(matrix, yfovRad, 1) : undefined;
+  const isCamera = isWhole && isYfov((yfovRad * 180) / Math.PI);
+  return isCamera ? poseFromMatrix(matrix, yfovRad, 1) : undefined;
 }
 
 function parse(text: string, where: string): Json {

@@ -2,7 +2,7 @@
 import type { Field } from "@irradia/runtime";
 import type { SceneLight } from "@irradia/three/webgpu";
 import { Box3, type Group, type Mesh, type Object3D, PerspectiveCamera, Vector3 } from "three/webgpu";
-import { type Box, centre, framePose, type Pose, poseFromMatrix } from "../camera/pose.js";
+import { type Box, centre, diagonal, framePose, type Pose, poseFromMatrix } from "../camera/pose.js";
 
 /** A camera of the file. */
 export interface NamedPose {
@@ -86,7 +86,7 @@ function camerasOf(root: Object3D, box: Box): NamedPose[] {
   root.traverse((object) => {
     if (!(object instanceof PerspectiveCamera)) return;
     const eye = new Vector3().setFromMatrixPosition(object.matrixWorld);
-    const distance = Math.max(eye.distanceTo(new Vector3(...centre(box))), 0.1);
+    const distance = Math.max(eye.distanceTo(new Vector3(...centre(box))), 0.01 * diagonal(box));
     const pose = poseFromMatrix(object.matrixWorld.elements, (object.fov * Math.PI) / 180, distance);
     poses.push({ name: object.name || `Camera ${poses.length + 1}`, pose });
   });

@@ -32,6 +32,7 @@ export class Stage {
   #model: Model | undefined;
   #environment: Texture | undefined;
   #probes: ProbeSpheres | undefined;
+  #movable: Object3D | undefined;
 
   get model(): Model | undefined {
     return this.#model;
@@ -56,6 +57,7 @@ export class Stage {
     }
     this.#dropProbes();
     this.#model = model;
+    this.#movable = movable.mesh;
     this.scene.add(model.root, movable.mesh);
     model.light.lit(movable.mesh);
     this.#light();
@@ -68,17 +70,21 @@ export class Stage {
     this.#light();
   }
 
-  /** @returns whether there are any */
-  showProbes(view: ProbeView, ev: number): boolean {
+  showProbes(view: ProbeView, ev: number): void {
     const probes = this.#model?.light.baked?.probes;
-    if (!probes) return false;
+    if (!probes) return;
     if (!this.#probes && view !== "off") {
       this.#probes = new ProbeSpheres(probes, this.size);
       this.scene.add(this.#probes.mesh);
     }
     this.#probes?.show(view);
     if (this.#probes) this.#probes.ev = ev;
-    return true;
+  }
+
+  /** What can be seen now but isn't of the scene: probes, and what moves through its light. */
+  get guests(): readonly Object3D[] {
+    const all = [this.#movable, this.#probes?.mesh];
+    return all.filter((guest) => guest?.visible === true) as Object3D[];
   }
 
   /** To be called before each frame: near and far as close to the scene as they can be. */

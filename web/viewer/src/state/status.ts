@@ -1,7 +1,7 @@
 /** What the page knows and shows, but no link repeats. */
 import type { Problem } from "../files/problem.js";
 import type { Model } from "../scene/model.js";
-import type { Difference } from "../view/error-picture.js";
+import type { Difference } from "../view/difference.js";
 import type { BackendName } from "../view/renderer.js";
 import type { Reference, SideChoice } from "../view/sources.js";
 import type { Statistic } from "../view/statistics.js";
@@ -28,7 +28,8 @@ export interface Status {
   readonly views: readonly View[];
   /** In use, whoever chose it. */
   readonly ev: number;
-  readonly difference: Difference | undefined;
+  /** Of two sides; null where they have no pixel in common. */
+  readonly difference: Difference | null | undefined;
   readonly statistics: readonly Statistic[];
   /** Where first bounces come from, in words. */
   readonly direct: string;

@@ -15,7 +15,7 @@ export interface BarActions {
 
 export function bar(status: Store<Status>, actions: BarActions): HTMLElement {
   const name = el("span", { class: "file" });
-  const progress = el("progress", { hidden: true, max: 1 });
+  const progress = el("progress", { hidden: true, max: 1, "aria-label": "Reading files" });
   status.watch(
     ({ model }) => model?.name ?? "",
     (text) => {

@@ -31,7 +31,6 @@ const ICONS = {
   panel: "M3 4h14v12H3z M12.5 4v12",
   full: "M4 8V4h4 M12 4h4v4 M16 12v4h-4 M8 16H4v-4",
   close: "M5 5l10 10 M15 5L5 15",
-  home: "M4 9.5L10 4l6 5.5 M5.5 8.5V16h9V8.5",
 } as const;
 export type IconName = keyof typeof ICONS;
 

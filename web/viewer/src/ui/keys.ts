@@ -1,5 +1,5 @@
 /** Keys of the whole page. */
-import { isTyping } from "../camera/look.js";
+import { isForControl } from "../camera/look.js";
 import {
   COMPARISONS,
   DEFAULTS,
@@ -26,7 +26,7 @@ export interface KeyActions {
 export function listenToKeys(state: Store<ViewerState>, status: Store<Status>, actions: KeyActions): void {
   const bindings = bindingsOf(state, status, actions);
   window.addEventListener("keydown", (event) => {
-    if (isTyping(event)) return;
+    if (isForControl(event)) return;
     const does = bindings[event.key] ?? bindings[event.key.toLowerCase()];
     if (!does) return;
     event.preventDefault();

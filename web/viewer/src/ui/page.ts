@@ -39,7 +39,7 @@ export function buildPage(app: App, base: ViewerState): void {
   const page = options.kiosk
     ? [stage]
     : [bar(status, actions), stage, panel(state, status, actions), welcome(status, openFiles), help, toast];
-  document.body.append(...page, problems(status));
+  document.body.append(...page, problems(status, host));
   document.body.classList.toggle("kiosk", options.kiosk);
   state.watch(
     ({ panel: isOpen }) => isOpen,

@@ -4,12 +4,15 @@ import type { Status } from "../state/status.js";
 import type { Store } from "../state/store.js";
 import { el, iconButton } from "./dom.js";
 
-export function problems(status: Store<Status>): HTMLElement {
+/** @param next what has the keys once the last problem is closed */
+export function problems(status: Store<Status>, next: HTMLElement): HTMLElement {
   const element = el("div", { class: "problems", role: "alert" });
   const close = (problem: Problem): void => {
     const left = status.value.problems.filter((one) => one !== problem);
-    const phase = status.value.model ? "ready" : "empty";
-    status.set(left.length > 0 ? { problems: left } : { problems: left, phase, message: "" });
+    const { model, isOpening } = status.value;
+    const phase = model ? ("ready" as const) : ("empty" as const);
+    status.set({ problems: left, ...(left.length === 0 && !isOpening && { phase, message: "" }) });
+    (element.querySelector("button") ?? next).focus();
   };
   status.watch(
     ({ problems: all }) => all,

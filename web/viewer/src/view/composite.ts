@@ -15,7 +15,8 @@ import {
 } from "three/tsl";
 import type { Node, RenderTarget, Texture, WebGPURenderer } from "three/webgpu";
 import type { Comparison, Tone } from "../state/state.js";
-import { type Difference, ErrorPicture } from "./error-picture.js";
+import type { Difference } from "./difference.js";
+import { ErrorPicture } from "./error-picture.js";
 import { FullScreen } from "./quad.js";
 import { coded, displayed, type Reading, ReadSide, type SideNodes } from "./tone.js";
 
@@ -67,8 +68,8 @@ export class Composite {
     this.#pass(options).draw(renderer, target);
   }
 
-  /** How far the sides are apart, as a display shows them. */
-  async measure(renderer: WebGPURenderer, options: CompositeOptions): Promise<Difference> {
+  /** How far the sides are apart, as a display shows them; null where they have no pixel in common. */
+  async measure(renderer: WebGPURenderer, options: CompositeOptions): Promise<Difference | null> {
     this.#bind(options);
     return this.#error(options.tone).measure(renderer);
   }

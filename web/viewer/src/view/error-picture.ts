@@ -3,16 +3,11 @@
 import { clamp, dot, float, min, mix, step, vec3, vec4 } from "three/tsl";
 import { FloatType, type Node, type RenderTarget, type WebGPURenderer } from "three/webgpu";
 import type { Tone } from "../state/state.js";
+import { type Difference, differenceOf } from "./difference.js";
 import { colourColumn, colourRow, featureColumn, featureRow, flipError, opponent } from "./flip.js";
 import { colourKernels, featureKernels } from "./flip-kernels.js";
 import { FullScreen, makeTarget, texelOf } from "./quad.js";
 import { displayed, type SideNodes, srgb } from "./tone.js";
-
-/** Mean FLIP, and PSNR of coded values in decibels; Infinity for equal pictures. */
-export interface Difference {
-  readonly flip: number;
-  readonly psnrDb: number;
-}
 
 interface Step {
   readonly pass: FullScreen;
@@ -57,7 +52,7 @@ export class ErrorPicture {
   }
 
   /** Draws, waits for the GPU and averages. */
-  async measure(renderer: WebGPURenderer): Promise<Difference> {
+  async measure(renderer: WebGPURenderer): Promise<Difference | null> {
     this.draw(renderer);
     const { width, height } = this.result;
     const rgba = await renderer.readRenderTargetPixelsAsync(this.result, 0, 0, width, height);
@@ -76,16 +71,4 @@ export class ErrorPicture {
     this.#steps.push(step);
     return step.target;
   }
-}
-
-/** Means over the pixels of `result` where both sides show something. */
-export function differenceOf(rgba: Float32Array): Difference {
-  let [flip, squared, count] = [0, 0, 0];
-  for (let i = 0; i + 3 < rgba.length; i += 4) {
-    if ((rgba[i + 3] ?? 0) < 0.5) continue;
-    flip += rgba[i] ?? 0;
-    squared += rgba[i + 1] ?? 0;
-    count += 1;
-  }
-  return { flip: flip / Math.max(count, 1), psnrDb: -10 * Math.log10(squared / Math.max(count, 1)) };
 }

@@ -4,7 +4,7 @@ import { type Camera, FloatType, type Scene, type WebGPURenderer } from "three/w
 import type { Picture } from "../files/picture.js";
 import type { Pass, View } from "../state/state.js";
 import { Composite, type CompositeOptions } from "./composite.js";
-import type { Difference } from "./error-picture.js";
+import type { Difference } from "./difference.js";
 import { automaticEv } from "./exposure.js";
 import { FullScreen, makeTarget, texelOf } from "./quad.js";
 import { ReferencePass } from "./reference-pass.js";
@@ -48,9 +48,14 @@ export class Frame {
   }
 
   draw(scene: Scene, camera: Camera, options: FrameOptions): void {
+    this.drawSides(scene, camera, options);
+    this.compose(options);
+  }
+
+  /** Leaves the canvas as it is. */
+  drawSides(scene: Scene, camera: Camera, options: FrameOptions): void {
     this.#drawSide(0, options.left, scene, camera, options);
     if (options.compare !== "single") this.#drawSide(1, options.right, scene, camera, options);
-    this.compose(options);
   }
 
   /** The sides as they were last drawn, onto the canvas. */
@@ -66,8 +71,8 @@ export class Frame {
     return automaticEv(rgba as unknown as Float32Array);
   }
 
-  /** How far apart the sides are, as they were last drawn. */
-  measure(options: FrameOptions): Promise<Difference> {
+  /** How far apart the sides are, as they were last drawn; null where they have no pixel in common. */
+  measure(options: FrameOptions): Promise<Difference | null> {
     return this.#composite.measure(this.#renderer, compositeOptions(options));
   }
 
@@ -104,13 +109,17 @@ export class Frame {
   }
 }
 
-/** What moves takes the same light as the rest, where that is to be had everywhere. */
+/**
+ * What moves takes the same light as the rest, where that is to be had everywhere. Each setter goes through all
+ * surfaces, so none is called in vain.
+ */
 function showSource(light: SceneLight, name: string, view: View): void {
-  light.use(name);
+  if (light.source.name !== name) light.use(name);
   const mobile = light.sources.filter((source) => source.isDynamic);
   const dynamic = name === "none" ? undefined : (mobile.find((source) => source.name === name) ?? mobile[0]);
-  light.dynamicSource = dynamic?.name ?? null;
-  light.view = lightView(view);
+  const [moving, shown] = [dynamic?.name ?? null, lightView(view)];
+  if (light.dynamicSource !== moving) light.dynamicSource = moving;
+  if (light.view !== shown) light.view = shown;
 }
 
 /** Whether a view's numbers are light, and so need exposure. */

@@ -2,6 +2,7 @@
 import { COMPARISONS, VIEWS, type ViewerState } from "../../state/state.js";
 import type { Status } from "../../state/status.js";
 import type { Store } from "../../state/store.js";
+import type { Difference } from "../../view/difference.js";
 import { type Choice, note, section, segments, select, slider } from "../controls.js";
 import { COMPARISON_LABELS, choicesFrom, VIEW_LABELS } from "./labels.js";
 
@@ -62,12 +63,14 @@ function numbersLine(status: Statuses): HTMLElement {
   const numbers = note("numbers");
   status.watch(
     ({ difference }) => difference,
-    (difference) => numbers.show(difference ? differenceText(difference) : ""),
+    (difference) => numbers.show(difference === undefined ? "" : differenceText(difference)),
   );
   return numbers.element;
 }
 
-function differenceText({ flip, psnrDb }: NonNullable<Status["difference"]>): string {
+function differenceText(difference: Difference | null): string {
+  if (!difference) return "No pixel in common";
+  const { flip, psnrDb } = difference;
   const psnr = Number.isFinite(psnrDb) ? `${psnrDb.toFixed(1)} dB` : "∞";
   return `PSNR ${psnr}   FLIP ${flip.toFixed(4)}`;
 }
