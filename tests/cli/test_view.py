@@ -140,7 +140,23 @@ def test_parts_of_files_are_served(ask, asked: str, part: slice) -> None:
     assert answer.headers["Content-Range"] == f"bytes {first}-{first + len(data) - 1}/{len(glb())}"
 
 
-@pytest.mark.parametrize(("asked", "status"), [("bytes=9999-", 416), ("bytes=-0", 416), ("lines=1-2", 200)])
+@pytest.mark.parametrize("host", ["[", "[::1", "]"])
+def test_what_is_no_address_is_a_bad_request(ask, host: str) -> None:
+    assert ask("/", Host=host)[0].status == 400
+    assert ask(f"http://{host}/", Host="localhost")[0].status == 400
+
+
+@pytest.mark.parametrize(
+    ("asked", "status"),
+    [
+        ("bytes=9999-", 416),
+        ("bytes=-0", 416),
+        (f"bytes={'9' * 5000}-", 416),
+        (f"bytes=0-{'9' * 5000}", 416),
+        ("bytes=\u00b2-", 200),
+        ("lines=1-2", 200),
+    ],
+)
 def test_ranges_that_are_not_there(ask, asked: str, status: int) -> None:
     assert ask("/files/0/scene.baked.glb", Range=asked)[0].status == status
 

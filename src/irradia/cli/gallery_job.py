@@ -60,7 +60,7 @@ class GalleryJob:
     width: int = 480
     renderer: Literal["webgl2", "webgpu"] = "webgl2"
     gpu: bool = False
-    timeout_s: float = 120.0
+    timeout_s: float = 300.0
 
     def __post_init__(self) -> None:
         if self.out.suffix.lower() not in (".png", ".html"):

@@ -14,6 +14,8 @@ from irradia.core.errors import IrradiaError
 _KEY_SUFFIX = b"258EAFA5-E914-47DA-95CA-C5AB0DC85B11"  # section 1.3
 _CONTINUATION, _TEXT, _CLOSE, _PING, _PONG = 0x0, 0x1, 0x8, 0x9, 0xA
 _MAX_BYTES = 1 << 28
+_PATIENCE_S = 30.0  # what has begun goes on
+_STOPPED = "the browser stopped in the middle of a message"
 
 
 class SocketError(IrradiaError):
@@ -67,14 +69,14 @@ class WebSocket:
         Raises:
             SocketError: The connection is gone.
         """
-        message = b""
+        message, has_begun = b"", False
         while True:
-            self._socket.settimeout(max(timeout_s, 1e-3))
+            self._socket.settimeout(_PATIENCE_S if has_begun else max(timeout_s, 1e-3))
             try:
                 self._fill(2)
-            except TimeoutError:
-                if message:
-                    continue
+            except TimeoutError as error:
+                if has_begun:
+                    raise SocketError(_STOPPED) from error
                 return None
             is_last, kind, data = self._frame()
             if kind == _PING:
@@ -85,6 +87,7 @@ class WebSocket:
                 message += data
                 if is_last:
                     return message.decode("utf-8")
+                has_begun = True
 
     def _greet(self, host: str, port: int, path: str) -> None:
         """The handshake of section 4. Without an Origin, which browsers refuse here."""
@@ -131,11 +134,11 @@ class WebSocket:
         return bool(first & 0x80), first & 0x0F, self._take(n_bytes)
 
     def _take(self, n_bytes: int) -> bytes:
-        self._socket.settimeout(30.0)  # what has begun goes on
+        self._socket.settimeout(_PATIENCE_S)
         try:
             self._fill(n_bytes)
         except TimeoutError as error:
-            raise SocketError("the browser stopped in the middle of a message") from error
+            raise SocketError(_STOPPED) from error
         taken, self._unread = self._unread[:n_bytes], self._unread[n_bytes:]
         return taken
 

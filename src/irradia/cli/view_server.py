@@ -33,7 +33,8 @@ TYPES = {
     ".safetensors": "application/vnd.safetensors",
     ".zst": "application/zstd",
 }
-_RANGE = re.compile(r"bytes=(\d*)-(\d*)$")
+_MAX_DIGITS = 18  # of a byte's place; more than any file has
+_RANGE = re.compile(r"bytes=([0-9]*)-([0-9]*)$")
 _CHUNK_BYTES = 1 << 18
 
 
@@ -133,10 +134,14 @@ class _Handler(BaseHTTPRequestHandler):
         """Says nothing: a line for every file would hide what matters."""
 
     def _answer(self, *, with_body: bool) -> None:
-        if not self._is_for_us():
+        host, path = _host(self.headers.get("Host", "")), _path(self.path)
+        if host is None or path is None:
+            self._refuse(HTTPStatus.BAD_REQUEST)
+            return
+        if host not in (HOST, "localhost"):  # another site's name, made to point here, would own these files
             self._refuse(HTTPStatus.FORBIDDEN)
             return
-        found = cast("ViewServer", self.server).library.look(urlsplit(self.path).path.removeprefix("/"))
+        found = cast("ViewServer", self.server).library.look(path.removeprefix("/"))
         if found is None:
             self._refuse(HTTPStatus.NOT_FOUND)
             return
@@ -150,11 +155,6 @@ class _Handler(BaseHTTPRequestHandler):
                 self._begin(HTTPStatus.NOT_MODIFIED, found, 0, tag)
                 return
             self._send(found, stream, size, tag, with_body=with_body)
-
-    def _is_for_us(self) -> bool:
-        """Another site's name that was made to point here would make these files its own."""
-        host = urlsplit(f"//{self.headers.get('Host', '')}").hostname
-        return host in (HOST, "localhost")
 
     def _send(self, found: Served, stream: IO[bytes], size: int, tag: str, *, with_body: bool) -> None:
         part = _part(self.headers.get("Range"), size)
@@ -199,6 +199,22 @@ class _Handler(BaseHTTPRequestHandler):
         self.end_headers()
 
 
+def _host(header: str) -> str | None:
+    """Its name without the port; None where it is none."""
+    try:
+        return urlsplit(f"//{header}").hostname or ""
+    except ValueError:
+        return None
+
+
+def _path(address: str) -> str | None:
+    """Of what was asked for; None where it is none."""
+    try:
+        return urlsplit(address).path
+    except ValueError:
+        return None
+
+
 def _part(asked: str | None, size: int) -> tuple[int, int] | None:
     """First byte and number of bytes of a Range header; None where there are no such bytes.
 
@@ -208,6 +224,8 @@ def _part(asked: str | None, size: int) -> tuple[int, int] | None:
     if match is None or match.groups() == ("", ""):
         return 0, size
     first, last = match.groups()
+    if max(len(first), len(last)) > _MAX_DIGITS:
+        return None
     if first == "":
         count = min(int(last), size)
         return (size - count, count) if count else None
