@@ -4,6 +4,7 @@ import { test } from "node:test";
 import {
   Composite,
   composeText,
+  directives,
   ENCODING_TYPES,
   type Encoding,
   type Field,
@@ -15,8 +16,10 @@ import {
   type Tensor,
   TriPlane,
   tensorShapes,
+  tensorValues,
   WEBGL2_LIMITS,
   WEBGPU_LIMITS,
+  withDirect,
 } from "@irradia/runtime";
 import { refuses } from "./hostile.js";
 import { decoder, readAny, vector, vectors } from "./vectors.js";
@@ -128,6 +131,57 @@ test("a second table has pieces of its own, and shares the rest", () => {
     words.map(([, count]) => count),
     ["1", "4"],
   );
+});
+
+const HALF = { precision: "half" } as const;
+
+test("half precision is a choice of pieces, and says what it needs", () => {
+  for (const { name } of vectors()) {
+    const shader = fieldShader(fieldOf(name), WEBGPU_LIMITS, HALF);
+    const text = shader.text("wgsl");
+    assert.deepEqual(shader.requires, ["shader-f16"]);
+    assert.equal(directives(shader), "enable f16;\n");
+    assert.doesNotMatch(text, /enable/);
+    assert.match(text, /array<vec4h, 4>/);
+    const functions = functionsOf(text, "wgsl");
+    assert.equal(new Set(functions).size, functions.length);
+    for (const called of [shader.entry, ...Object.values(shader.views)])
+      assert.ok(functions.includes(called));
+  }
+});
+
+test("floats need nothing", () => {
+  const shader = fieldShader(fieldOf("hash-fp16"), WEBGPU_LIMITS);
+  assert.equal(shader.requires, undefined);
+  assert.equal(directives(shader), "");
+  assert.doesNotMatch(shader.text("wgsl"), /vec4h/);
+});
+
+test("half precision has no GLSL", () => {
+  const shader = fieldShader(fieldOf("hash-fp16"), WEBGL2_LIMITS, HALF);
+  refuses(() => shader.text("glsl"), /expected WGSL, HLSL or MSL for half precision, found GLSL/);
+});
+
+test("a direct map on top keeps what a shader requires", () => {
+  const field = fieldOf("hash-fp16");
+  const indirect = { ...field, frame: { ...field.frame, quantity: "indirect" } } as const;
+  const map = { width: 1, height: 1, layers: 1, encoding: "rgb9e5", texels: new Uint32Array(1) } as const;
+  const shader = fieldShader(indirect, WEBGPU_LIMITS, HALF);
+  assert.deepEqual(withDirect(shader, map, 1, WEBGPU_LIMITS).requires, ["shader-f16"]);
+});
+
+test("weights beyond half floats are refused", () => {
+  const field = fieldOf("hash-fp32");
+  const weight = field.tensors.get("mlp.1.weight") ?? assert.fail();
+  const values = Float32Array.from(tensorValues(weight));
+  values[3] = 70000;
+  const tensors = new Map(field.tensors).set("mlp.1.weight", {
+    shape: weight.shape,
+    stored: { kind: "float", values },
+  });
+  const large = { ...field, tensors };
+  assert.ok(fieldShader(large, WEBGPU_LIMITS));
+  refuses(() => fieldShader(large, WEBGPU_LIMITS, HALF), /at most 65504.*found 70000/);
 });
 
 test("more tables than fragment shaders have textures are refused", () => {

@@ -177,6 +177,32 @@ for (const { name } of vectors()) {
   });
 }
 
+test("half precision has its perceptron in texels of two columns", () => {
+  for (const { name } of vectors()) {
+    const field = fieldOf(name);
+    const plan = planFieldTextures(field, WEBGPU_LIMITS, "half");
+    const { weights } = packField(field, plan);
+    assert.equal(weights?.byteLength, plan.constants.weights?.nBytes);
+    const halves = new Uint16Array(weights?.buffer ?? assert.fail());
+    plan.constants.layers.forEach((layer, i) => {
+      const weight = tensorValues(field.tensors.get(`mlp.${i}.weight`) ?? assert.fail());
+      const inRow = (row: number, column: number): number =>
+        i
+          ? 4 * ((row >> 2) * layer.blocksIn + (column >> 2)) + (column & 3)
+          : column * layer.blocksOut + (row >> 2);
+      for (let row = 0; row < layer.nOutputs; row++) {
+        for (let column = 0; column < layer.nInputs; column++) {
+          const found = half(
+            halves[8 * layer.firstWeight + 4 * inRow(row, column) + (row & 3)] ?? Number.NaN,
+          );
+          const value = weight[row * layer.nInputs + column] ?? Number.NaN;
+          assert.ok(Math.abs(found - value) <= Math.max(2 ** -11 * Math.abs(value), 2 ** -25));
+        }
+      }
+    });
+  }
+});
+
 test("tables cost on the GPU what they cost on disk, up to a row", () => {
   const bytes = ["hash-fp32", "hash-fp16", "hash-int8", "hash-int4"].map((name) => {
     return planFieldTextures(fieldOf(name), WEBGPU_LIMITS).tables[0]?.texture.nBytes;
