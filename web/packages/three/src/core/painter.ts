@@ -1,5 +1,5 @@
 /** What the two renderers do differently. */
-import type { LightShader, Probes, TextureLimits } from "@irradia/runtime";
+import type { LightShader, Precision, Probes, TextureLimits } from "@irradia/runtime";
 import type { Data3DTexture, DataArrayTexture, Light, Material, Texture } from "three";
 import type { View } from "../types.js";
 import type { Lamps } from "./lamps.js";
@@ -51,6 +51,8 @@ export class GridLight {
 /** Writes light into materials; one for each scene. */
 export interface Painter {
   readonly limits: TextureLimits;
+  /** Of fields' perceptrons; floats where absent. */
+  readonly precision?: Precision;
   /** Factor on E, read at each frame. */
   intensity: number;
   /**

@@ -58,7 +58,7 @@ export class BakedSceneLight implements SceneLight {
     this.#validity = validity;
     this.#unshadow = mask && painter.shadow(mask);
     this.#surfaces = new Map(surfaces.map((surface) => [surface.mesh, surface]));
-    this.#ofFile = baked ? sourcesOf(baked, lights.live.length > 0, painter.limits) : [];
+    this.#ofFile = baked ? sourcesOf(baked, lights.live.length > 0, painter.limits, painter.precision) : [];
     this.#sources = [...this.#ofFile, noSource()];
     this.#source = first ? sourceNamed(this.#sources, first) : this.#best();
     this.#dynamic = this.#sources.find(isMobile);

@@ -7,6 +7,7 @@ import {
   type LightInput,
   type LightShader,
   lightmapShader,
+  type Precision,
   type Probes,
   probeShader,
   type Quantity,
@@ -97,8 +98,14 @@ export function noSource(): Source {
  * The sources of a file, in the order of `SourceKind`.
  *
  * @param hasLiveLights whether first bounces of lights were left to the engine; a sun that was has no node
+ * @param precision of the field's perceptron; floats by default
  */
-export function sourcesOf(baked: BakedLight, hasLiveLights: boolean, limits: TextureLimits): Source[] {
+export function sourcesOf(
+  baked: BakedLight,
+  hasLiveLights: boolean,
+  limits: TextureLimits,
+  precision?: Precision,
+): Source[] {
   const { lighting, lightmap, directional, field, probes } = baked;
   const quantity = hasLiveLights ? "indirect" : (lighting.lightmap?.light ?? "full");
   const sources: Source[] = [];
@@ -111,7 +118,7 @@ export function sourcesOf(baked: BakedLight, hasLiveLights: boolean, limits: Tex
   }
   if (directional) add("directional", quantity, { make: () => directionalShader(baked, limits) });
   if (field) {
-    const make = () => fieldShader(field, limits);
+    const make = () => fieldShader(field, limits, { precision });
     add("field", field.frame.quantity, { make, direct: directOf(baked, limits), isEverywhere: true });
   }
   if (probes?.structure) {

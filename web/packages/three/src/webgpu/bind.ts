@@ -17,7 +17,11 @@ const TYPES: Readonly<Record<LightInput, string>> = {
 
 /** What this module asks of a NodeBuilder; its types say less. */
 type Builder = NodeBuilder & {
-  readonly renderer: { readonly backend: { readonly isWebGPUBackend?: boolean } };
+  readonly renderer: {
+    readonly backend: { readonly isWebGPUBackend?: boolean; readonly device?: GPUDevice };
+  };
+  /** Of builders for WGSL alone. */
+  enableShaderF16?(): void;
   getCodeFromNode(node: Node, type: string): { code: string };
 };
 type Built = Node & { build(builder: NodeBuilder, output?: string): string };
@@ -92,6 +96,7 @@ class LightTextNode extends CodeNode {
 
   override generate(builder: Builder): string {
     const isWgsl = builder.renderer.backend.isWebGPUBackend === true;
+    enableRequired(this.#shader, builder);
     const { textures, uniforms } = this.#shader;
     const names = [
       ...textures.map(({ name }, i) => [name, this.#textures[i]?.build(builder, "property")]),
@@ -105,6 +110,15 @@ class LightTextNode extends CodeNode {
     const code = names.reduce((result, [from, to]) => renamed(result, from, to), text);
     builder.getCodeFromNode(this, "code").code = code;
     return code;
+  }
+}
+
+/** Writes the directives that a text needs, which no module may have on a device without the feature. */
+function enableRequired({ requires = [] }: LightShader, builder: Builder): void {
+  for (const feature of requires) {
+    if (!builder.renderer.backend.device?.features.has(feature))
+      throw new Error(`the source needs a device with ${feature}; precisionOf(renderer) knows`);
+    builder.enableShaderF16?.();
   }
 }
 

@@ -1,5 +1,5 @@
 /** Light in the materials of WebGPURenderer, by their context's getGI. */
-import type { LightShader, LightView, Probes, TextureLimits } from "@irradia/runtime";
+import type { LightShader, LightView, Precision, Probes, TextureLimits } from "@irradia/runtime";
 import type { Material } from "three";
 import { context, Fn, renderGroup, screenUV, texture, uniform, vec3, vec4 } from "three/tsl";
 import type { Node, NodeBuilder, TextureNode } from "three/webgpu";
@@ -34,7 +34,10 @@ export class WebGPUPainter implements Painter {
   readonly #intensity = uniform(1).setGroup(renderGroup);
   readonly #screens = new WeakMap<ScreenLight, TextureNode>();
 
-  constructor(readonly limits: TextureLimits) {}
+  constructor(
+    readonly limits: TextureLimits,
+    readonly precision: Precision = "float",
+  ) {}
 
   get intensity(): number {
     return this.#intensity.value;
