@@ -240,8 +240,8 @@ def _markdown(outcome: Outcome, arguments: argparse.Namespace, plot: str) -> str
         "",
         f"Objects of at least {MIN_TEXELS} compared texels that differ most, by relMSE: "
         + ", ".join(f"{name} {relmse:.1e} ± {error:.1e}" for name, relmse, error in o.worst)
-        + ". A gather ray reads the texel that it meets, unfiltered, where light changes within one, as in gaps "
-        "narrower than a texel.",
+        + ". A gather ray reads the texel that it meets, unfiltered, where light changes within one, "
+        "as in gaps narrower than a texel.",
         "",
         f"`python bench/cached_vs_path.py --scene {o.scene} --resolution {o.resolution} --texels "
         f"{arguments.texels} --samples {arguments.samples} --path-samples {arguments.path_samples}`, "
