@@ -98,6 +98,7 @@ export class Rig {
   #step(look: Look, seconds: number): boolean {
     const { camera } = this.#options;
     const { yaw, pitch, move, stride, speed } = look.take();
+    const reach = camera.position.distanceTo(this.#target);
     const turn = new Euler().setFromQuaternion(camera.quaternion, "YXZ");
     turn.set(clampTurn(turn.x + pitch), turn.y + yaw, 0, "YXZ");
     camera.quaternion.setFromEuler(turn);
@@ -108,7 +109,7 @@ export class Rig {
     way.applyEuler(isWalk ? new Euler(0, turn.y, 0) : turn);
     camera.position.add(isWalk && this.#ground ? this.#ground.clip(camera.position, way) : way);
     const settles = isWalk && this.#settle(seconds);
-    this.#lookAhead();
+    this.#lookAhead(reach);
     return look.isMoving || settles;
   }
 
@@ -123,10 +124,10 @@ export class Rig {
     return !isThere;
   }
 
-  /** Keeps what orbit would turn about in front of the camera, as far away as before. */
-  #lookAhead(): void {
+  /** Keeps what orbit would turn about in front of the camera, as far away as it was. */
+  #lookAhead(reach: number): void {
     const { camera } = this.#options;
-    const distance = Math.max(camera.position.distanceTo(this.#target), this.#size * 0.01);
+    const distance = Math.max(reach, this.#size * 0.01);
     camera.getWorldDirection(this.#target).multiplyScalar(distance).add(camera.position);
   }
 }

@@ -9,7 +9,9 @@ export function directText(light: SceneLight, isStudio: boolean): string {
     return directFrom === "lights" ? "Live lights alone." : "No light but what surfaces emit.";
   }
   if (directFrom === "source") return "Direct light is part of this source.";
-  if (directFrom === "map") return "Indirect light from this source, direct light from a baked map.";
+  if (directFrom === "map") {
+    return "Indirect light from this source, direct light from a baked map; on what moves from the lamps, without shadows.";
+  }
   if (directFrom === "lights") return "Indirect light from this source, direct light from live lights.";
   return "Indirect light alone: there are no lights to give the direct part.";
 }

@@ -21,6 +21,13 @@ export const VIEW_LABELS: Record<View, string> = {
   uv: "Lightmap UV checker",
   validity: "Validity",
 };
+/** What a view's colours mean, where they don't say it themselves. */
+export const VIEW_HINTS: Partial<Record<View, string>> = {
+  raw: "Numbers of either sign: grey is 0.",
+  uv: "A square is 4 × 4 texels.",
+  validity:
+    "Green: texels that see all around them; red: inside something; blue: outside charts. Of probes: white where they are valid.",
+};
 export const PROBE_LABELS: Record<ProbeView, string> = {
   off: "Hidden",
   irradiance: "Irradiance",

@@ -4,7 +4,7 @@ import type { Status } from "../../state/status.js";
 import type { Store } from "../../state/store.js";
 import type { Difference } from "../../view/difference.js";
 import { type Choice, note, section, segments, select, slider } from "../controls.js";
-import { COMPARISON_LABELS, choicesFrom, VIEW_LABELS } from "./labels.js";
+import { COMPARISON_LABELS, choicesFrom, VIEW_HINTS, VIEW_LABELS } from "./labels.js";
 
 type States = Store<ViewerState>;
 type Statuses = Store<Status>;
@@ -77,11 +77,11 @@ function differenceText(difference: Difference | null): string {
 
 function viewControls(state: States, status: Statuses): HTMLElement[] {
   const view = select("Show", choicesFrom(VIEWS, VIEW_LABELS), (value) => state.set({ view: value }));
-  const missing = note();
+  const hint = note();
   const update = (): void => {
     const { views } = status.value;
     const isMissing = status.value.model !== undefined && !views.includes(state.value.view);
-    missing.show(isMissing ? "Magenta: this source has no such view." : "");
+    hint.show(isMissing ? "Magenta: this source has no such view." : (VIEW_HINTS[state.value.view] ?? ""));
     view.show(state.value.view);
   };
   status.watch(
@@ -93,7 +93,7 @@ function viewControls(state: States, status: Statuses): HTMLElement[] {
     },
   );
   state.watch(({ view: value }) => value, update);
-  return [view.element, missing.element];
+  return [view.element, hint.element];
 }
 
 function directLine(status: Statuses): HTMLElement {
