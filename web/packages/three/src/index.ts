@@ -15,6 +15,7 @@ export type {
   SceneLight,
   Shown,
   SourceKind,
+  SurfacesAs,
   View,
 } from "./types.js";
 export { LIGHTMAP_ATTRIBUTES } from "./types.js";

@@ -57,12 +57,20 @@ export type View = LightView | "irradiance" | "albedo" | "normal" | "depth" | "l
  */
 export type DirectFrom = "source" | "map" | "lights" | "none";
 
+/**
+ * How surfaces answer to light. `materials`: as three.js has it, diffuse and specular apart. `baked`: as the bake
+ * saw them, with emission + ρ/π · E, where ρ is all that a material reflects of even light, its reflections too;
+ * see-through surfaces tint what is behind them, and bend nothing. That is how reference pictures look.
+ */
+export type SurfacesAs = "materials" | "baked";
+
 /** What can be changed at once: see the properties of SceneLight of these names. */
 export interface Shown {
   readonly source: string;
   readonly view: View | null;
   readonly screen: Texture | null;
   readonly dynamicSource: string | null;
+  readonly surfacesAs: SurfacesAs;
 }
 
 /** A mesh that the light shines on. */
@@ -138,6 +146,8 @@ export interface SceneLight {
   view: View | null;
   /** Views that the source in use can show. */
   readonly views: readonly View[];
+  /** `materials` by default; views show the same with either. Throws InputError for anything else. */
+  surfacesAs: SurfacesAs;
   /** Factor on the baked light; 1 by default. */
   intensity: number;
   /** Stops: the light times 2^exposure shows well on a display; 0 where the file doesn't say. */

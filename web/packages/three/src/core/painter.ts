@@ -5,6 +5,12 @@ import type { View } from "../types.js";
 import type { Lamps } from "./lamps.js";
 import type { ShadowMask } from "./shadow-mask.js";
 
+/** The most that the bake lets a surface reflect. */
+export const MAX_REFLECTANCE = 0.98;
+
+/** Of a surface as the bake saw it: all of it; of one that is see-through its own light, or the tint of what passes. */
+export type BakedPart = "whole" | "added" | "passed";
+
 /** How a material is to show its light. */
 export interface Shading {
   /** Whence E comes; undefined is no light of ours. */
@@ -14,6 +20,10 @@ export interface Shading {
   /** Lights that this light leaves out and that don't shine by themselves. */
   readonly lamps: Lamps | undefined;
   readonly view: View | null;
+  /** Undefined is three.js' own shading. */
+  readonly baked: BakedPart | undefined;
+  /** What lights see-through surfaces, if they are as the bake saw them: screens show what stands behind. */
+  readonly seeThrough: LightShader | GridLight | undefined;
   /** Baked shadows of live lights. */
   readonly mask: ShadowMask | undefined;
   /** What the view of this name shows, where the lightmap is what is shown. */

@@ -1,7 +1,16 @@
 /** The light of one scene: which source each mesh shows, and how. */
 import { type BakedLight, expect, type LightShader, lightmapShader } from "@irradia/runtime";
 import type { DataArrayTexture, Group, Light, Material, Mesh, Object3D, Texture } from "three";
-import type { DirectFrom, LightSource, LitSurface, SceneLight, Shown, SourceKind, View } from "../types.js";
+import type {
+  DirectFrom,
+  LightSource,
+  LitSurface,
+  SceneLight,
+  Shown,
+  SourceKind,
+  SurfacesAs,
+  View,
+} from "../types.js";
 import type { FileLights } from "./file-lights.js";
 import { FirstBounce } from "./first-bounce.js";
 import { type GridLight, type Painter, ScreenLight, type Shading } from "./painter.js";
@@ -40,6 +49,7 @@ export class BakedSceneLight implements SceneLight {
   #dynamic: Source | undefined;
   #view: View | null = null;
   #screen: ScreenLight | undefined;
+  #surfacesAs: SurfacesAs = "materials";
   #isScreened = false;
   #version = 0;
   #wasValidityShown = false;
@@ -78,12 +88,15 @@ export class BakedSceneLight implements SceneLight {
     const source = sourceNamed(this.#sources, next.source);
     const dynamic = next.dynamicSource === null ? undefined : sourceNamed(this.#sources, next.dynamicSource);
     expect(!dynamic || isMobile(dynamic), "expected a source that needs no lightmap", `${dynamic?.name}`);
-    const before = [this.#source, this.#dynamic, this.#view, this.#isScreened];
+    const { surfacesAs } = next;
+    expect(["materials", "baked"].includes(surfacesAs), "expected 'materials' or 'baked'", `${surfacesAs}`);
+    const before = [this.#source, this.#dynamic, this.#view, this.#isScreened, this.#surfacesAs];
     this.#source = source;
     this.#dynamic = dynamic;
     this.#view = next.view;
+    this.#surfacesAs = surfacesAs;
     this.#setScreen(next.screen);
-    const after = [this.#source, this.#dynamic, this.#view, this.#isScreened];
+    const after = [this.#source, this.#dynamic, this.#view, this.#isScreened, this.#surfacesAs];
     if (after.some((each, i) => each !== before[i])) this.#apply();
   }
 
@@ -147,6 +160,14 @@ export class BakedSceneLight implements SceneLight {
 
   set view(view: View | null) {
     this.show({ view });
+  }
+
+  get surfacesAs(): SurfacesAs {
+    return this.#surfacesAs;
+  }
+
+  set surfacesAs(surfacesAs: SurfacesAs) {
+    this.show({ surfacesAs });
   }
 
   get views(): readonly View[] {
@@ -223,8 +244,8 @@ export class BakedSceneLight implements SceneLight {
   }
 
   get #shown(): Shown {
-    const { view, screen, dynamicSource } = this;
-    return { source: this.#source.name, view, screen, dynamicSource };
+    const { view, screen, dynamicSource, surfacesAs } = this;
+    return { source: this.#source.name, view, screen, dynamicSource, surfacesAs };
   }
 
   /** Of the texels that the source in use reads. */
@@ -277,11 +298,14 @@ export class BakedSceneLight implements SceneLight {
     const screen = this.#isScreened ? this.#screen : undefined;
     const { width, height } = this.baked?.lighting.lightmap ?? { width: 1, height: 1 };
     const source = screen ? this.#source : this.#sourceOf(hasLightmap, isDynamic);
+    const inline = this.#lightOf(source, hasLightmap, isDynamic);
     return {
-      light: screen ?? this.#lightOf(source, hasLightmap, isDynamic),
+      light: screen ?? inline,
+      seeThrough: inline,
       lamps: source && !hasLightmap ? this.#firstBounce.lamps(source, this.#source) : undefined,
       direct: screen && hasLightmap && this.#source.hasDirectMap ? this.#directMap() : undefined,
       view: this.#view,
+      baked: this.#surfacesAs === "baked" && this.#view === null ? "whole" : undefined,
       mask: hasLightmap ? this.#mask : undefined,
       validity: hasLightmap && this.#view === "validity" ? this.#shownValidity : undefined,
       lightmap: hasLightmap ? [width, height] : undefined,

@@ -2,6 +2,7 @@
 import type { LightShader } from "@irradia/runtime";
 import type { Material, Mesh } from "three";
 import type { Painter, Shading } from "./painter.js";
+import { drawTwice, hasReflectance, isSeeThrough } from "./see-through.js";
 import { takesLight } from "./surfaces.js";
 
 /**
@@ -14,6 +15,8 @@ export class Wardrobe {
   readonly #copies = new Map<Material, Map<string, Material>>();
   readonly #originals = new WeakMap<Material, Material>();
   readonly #lights = new WeakMap<Material, Shading["light"]>();
+  /** What meshes came with that are drawn twice. */
+  readonly #split = new WeakMap<Material[], Material>();
   readonly #ids = new WeakMap<object, number>();
 
   constructor(painter: Painter) {
@@ -26,18 +29,17 @@ export class Wardrobe {
 
   /** Shows a mesh so. */
   dress(mesh: Mesh, shading: Shading): void {
-    const { material } = mesh;
-    mesh.material = Array.isArray(material)
-      ? material.map((each) => this.#shown(each, shading))
-      : this.#shown(material, shading);
+    const material = this.#wornBy(mesh);
+    if (Array.isArray(material)) mesh.material = material.map((each) => this.#shown(each, shading));
+    else if (shading.baked && isSeeThrough(material) && drawTwice(mesh))
+      mesh.material = this.#parts(material, shading);
+    else mesh.material = this.#shown(material, shading);
   }
 
   /** Shows a mesh in the material that it came with. */
   undress(mesh: Mesh): void {
-    const { material } = mesh;
-    mesh.material = Array.isArray(material)
-      ? material.map((each) => this.originalOf(each))
-      : this.originalOf(material);
+    const material = this.#wornBy(mesh);
+    mesh.material = Array.isArray(material) ? material.map((each) => this.originalOf(each)) : material;
   }
 
   /** Throws the copies away that are lit so, which no mesh wears. */
@@ -57,9 +59,31 @@ export class Wardrobe {
     this.#copies.clear();
   }
 
+  /** Single materials are those of the file. */
+  #wornBy({ material }: Mesh): Material | Material[] {
+    if (!Array.isArray(material)) return this.originalOf(material);
+    return this.#split.get(material) ?? material;
+  }
+
+  /** What passes a see-through surface, and its own light. */
+  #parts(original: Material, shading: Shading): Material[] {
+    const nothing = { light: undefined, direct: undefined, lamps: undefined, mask: undefined };
+    const parts = [
+      this.#copyOf(original, { ...shading, ...nothing, baked: "passed" }),
+      this.#copyOf(original, { ...shading, light: shading.seeThrough, direct: undefined, baked: "added" }),
+    ];
+    this.#split.set(parts, original);
+    return parts;
+  }
+
   #shown(material: Material, shading: Shading): Material {
     const original = this.originalOf(material);
-    if (!takesLight(original) || (!shading.light && !shading.view && !shading.mask)) return original;
+    const baked = hasReflectance(original) && !isSeeThrough(original) ? shading.baked : undefined;
+    const isPlain = !shading.light && !shading.view && !shading.mask && !baked;
+    return takesLight(original) && !isPlain ? this.#copyOf(original, { ...shading, baked }) : original;
+  }
+
+  #copyOf(original: Material, shading: Shading): Material {
     const copies = this.#copies.get(original) ?? new Map<string, Material>();
     this.#copies.set(original, copies);
     const key = this.#keyOf(shading);
@@ -82,9 +106,9 @@ export class Wardrobe {
     return id;
   }
 
-  #keyOf({ light, direct, lamps, validity, view, lightmap }: Shading): string {
+  #keyOf({ light, direct, lamps, validity, view, baked, lightmap }: Shading): string {
     const id = [light, direct, lamps, validity].map((part) => this.#idOf(part)).join("+");
-    return `irradia-${this.#scene}-${id}-${view ?? "picture"}-${lightmap ? "mapped" : "loose"}`;
+    return `irradia-${this.#scene}-${id}-${view ?? baked ?? "picture"}-${lightmap ? "mapped" : "loose"}`;
   }
 }
 

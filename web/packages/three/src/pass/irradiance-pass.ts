@@ -10,6 +10,7 @@ import {
   type Texture,
   Vector2,
 } from "three";
+import { isSeeThrough } from "../core/see-through.js";
 import { takesLight } from "../core/surfaces.js";
 import type { SceneLight } from "../types.js";
 import { exchangeMaterials } from "./undress.js";
@@ -145,7 +146,10 @@ export abstract class BaseIrradiancePass<Target extends DrawnTarget> {
     const lit = new Set<Object3D>(this.#light.surfaces.map(({ mesh }) => mesh));
     const restore = exchangeMaterials(scene, (worn, mesh) => {
       const original = this.#light.originalOf(worn);
-      return lit.has(mesh) && takesLight(original) ? this.#surfaceMaterial(original) : this.#hidden;
+      const isBehind = this.#light.surfacesAs === "baked" && isSeeThrough(original); // shows what stands there
+      return lit.has(mesh) && takesLight(original) && !isBehind
+        ? this.#surfaceMaterial(original)
+        : this.#hidden;
     });
     try {
       this.#drawer.drawSurfaces(this.#surfaces, scene, camera);

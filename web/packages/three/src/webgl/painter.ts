@@ -3,8 +3,10 @@ import type { LightShader, LightView, Probes, TextureLimits } from "@irradia/run
 import type { IUniform, Material, WebGLProgramParametersWithUniforms } from "three";
 import type { Lamps } from "../core/lamps.js";
 import { GridLight, type Painter, ScreenLight, type Shading } from "../core/painter.js";
+import { simplify } from "../core/see-through.js";
 import type { ShadowMask } from "../core/shadow-mask.js";
 import type { Inputs } from "../types.js";
+import { BAKED, bakedUniforms, prepare } from "./baked.js";
 import { bindGlsl, callOf } from "./bind.js";
 import { FRAGMENT, VERTEX } from "./chunks.js";
 import { LampUniform, lampDeclarations, lampLight } from "./lamps.js";
@@ -32,12 +34,18 @@ export class WebGLPainter implements Painter {
 
   paint(copy: Material, original: Material, shading: Shading, key: string): void {
     const [vertex, fragment] = [vertexPieces(shading), fragmentPieces(shading)];
-    const uniforms = this.#uniformsOf(shading);
+    const { baked } = shading;
+    const uniforms = { ...this.#uniformsOf(shading), ...(baked && bakedUniforms(original, baked)) };
+    if (baked) {
+      simplify(copy, baked);
+      prepare(copy, original);
+    }
     copy.onBeforeCompile = (program: WebGLProgramParametersWithUniforms, renderer) => {
       original.onBeforeCompile(program, renderer);
       Object.assign(program.uniforms, uniforms);
       program.vertexShader = inserted(program.vertexShader, vertex);
-      program.fragmentShader = masked(inserted(program.fragmentShader, fragment), shading);
+      const text = inserted(program.fragmentShader, fragment);
+      program.fragmentShader = asBaked(masked(text, shading), shading);
     };
     if (shading.mask || shading.lamps) this.#followLights(copy, original, shading);
     copy.customProgramCacheKey = () => `${original.customProgramCacheKey()}|${key}`;
@@ -105,6 +113,10 @@ function masked(text: string, { mask }: Shading): string {
   return mask ? text.replace("#include <lights_fragment_begin>", maskedLights) : text;
 }
 
+function asBaked(text: string, { baked }: Shading): string {
+  return baked ? text.replace("#include <alphamap_fragment>", BAKED.alphaMap) : text;
+}
+
 function vertexPieces({ lightmap }: Shading): Pieces {
   const { declarations, position, place, lightmapDeclarations } = VERTEX;
   return {
@@ -114,12 +126,17 @@ function vertexPieces({ lightmap }: Shading): Pieces {
 }
 
 function fragmentPieces(shading: Shading): Pieces {
-  const { light, lamps, view, mask, validity, lightmap } = shading;
+  const { light, lamps, view, baked, mask, validity, lightmap } = shading;
   const inputs = { ...FRAGMENT.inputs, ...(lightmap && FRAGMENT.lightmapInputs) };
   const varyings = [FRAGMENT.declarations, lightmap && FRAGMENT.lightmapDeclarations];
-  const ofImages = [mask && MASK_DECLARATIONS, validity && FRAGMENT.validityDeclarations];
+  const declarations = [
+    baked && BAKED.declarations,
+    mask && MASK_DECLARATIONS,
+    validity && FRAGMENT.validityDeclarations,
+  ];
   return {
-    common: [...varyings, ...textsOf(shading), ...ofImages].filter(Boolean).join("\n"),
+    common: [...varyings, ...textsOf(shading), ...declarations].filter(Boolean).join("\n"),
+    ...(baked && { lights_physical_fragment: BAKED.material }),
     ...(lamps && { lights_pars_begin: lampDeclarations(lamps) }),
     lights_fragment_begin: [
       FRAGMENT.frame,
@@ -128,6 +145,7 @@ function fragmentPieces(shading: Shading): Pieces {
     ].join("\n"),
     ...(light && { lights_fragment_end: FRAGMENT.noSky }),
     ...(light && !(light instanceof GridLight) && { aomap_fragment: FRAGMENT.add }),
+    ...(baked === "passed" && { "!opaque_fragment": BAKED.through }),
     ...(view && { "!opaque_fragment": `outgoingLight = ${viewOf(shading, inputs)};` }),
   };
 }

@@ -4,8 +4,10 @@ import type { Material } from "three";
 import { context, Fn, renderGroup, screenUV, texture, uniform, vec3, vec4 } from "three/tsl";
 import type { Node, NodeBuilder, TextureNode } from "three/webgpu";
 import { GridLight, type Painter, ScreenLight, type Shading } from "../core/painter.js";
+import { simplify } from "../core/see-through.js";
 import type { ShadowMask } from "../core/shadow-mask.js";
 import type { Inputs } from "../types.js";
+import { prepare, through } from "./baked.js";
 import { lightNode } from "./bind.js";
 import { inputsOf } from "./inputs.js";
 import { shine } from "./lamps.js";
@@ -48,9 +50,15 @@ export class WebGPUPainter implements Painter {
   }
 
   paint(copy: Material, original: Material, shading: Shading, key: string): void {
+    const { light, baked, view } = shading;
     const slots = copy as Material & Partial<NodeSlots>;
-    if (shading.light) slots.contextNode = context({ getGI: () => this.#indirect(shading) });
-    if (shading.view) slots.outputNode = this.#view(shading);
+    if (baked) {
+      simplify(copy, baked);
+      prepare(copy, original, baked);
+    }
+    if (light || baked) slots.contextNode = context({ getGI: () => this.#indirect(shading) });
+    if (view) slots.outputNode = this.#view(shading);
+    if (baked === "passed") slots.outputNode = vec4(through(copy), 1);
     copy.customProgramCacheKey = () => `${original.customProgramCacheKey()}|${key}`;
   }
 
@@ -76,6 +84,7 @@ export class WebGPUPainter implements Painter {
       if (shading.lamps) shine(shading.lamps, this.#intensity, builder);
       // All indirect light is multiplied by the occlusion, which baked light holds already. It holds the sky as
       // well: the environment's diffuse light goes by the very formula that it came in by.
+      if (!shading.light) return vec3(0);
       if (shading.light instanceof GridLight) return iblIrradiance.negate();
       return this.#irradiance(shading, builder).div(ambientOcclusion.max(LEAST_OCCLUSION)).sub(iblIrradiance);
     })() as Vec3Node;
