@@ -90,12 +90,13 @@ function loaded({ backend, scene, plugins }: Job): Promise<GLTF> {
 }
 
 function take(step: Step, scene: Scene, light: SceneLight): void {
-  const { occlusion, surroundings, use, view, intensity, dynamicSource, ball } = step;
+  const { occlusion, surroundings, use, view, intensity, dynamicSource, surfacesAs, ball } = step;
   if (step.black) edit(light, (material) => material.color.set(0));
   if (occlusion !== undefined) occlude(light, occlusion);
   if (surroundings !== undefined) scene.environment = surroundings > 0 ? evenLight(surroundings) : null;
   if (use !== undefined) light.use(use);
   if (view !== undefined) light.view = view as Shown | null;
+  if (surfacesAs !== undefined) light.surfacesAs = surfacesAs;
   if (intensity !== undefined) light.intensity = intensity;
   if (dynamicSource !== undefined) light.dynamicSource = dynamicSource;
   if (ball) addBall(scene, light, ball);

@@ -15,6 +15,7 @@ export interface Step {
   view?: string | null;
   intensity?: number;
   dynamicSource?: string | null;
+  surfacesAs?: "materials" | "baked";
   /** Puts a white ball there, lit or not. */
   ball?: { centre: [number, number, number]; radius: number; isLit: boolean };
   /** `light.dispose`. */
