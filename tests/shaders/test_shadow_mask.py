@@ -31,7 +31,7 @@ def test_each_light_reads_its_own_channel(language: str, tmp_path: Path) -> None
     nothing = np.zeros((len(CHANNELS), 3))
     asked = Questions(nothing, nothing, nothing, masks, nothing[:, :2], np.array(CHANNELS))
     piece = (SHADERS / language / f"shadow-mask.{language}").read_text(encoding="utf-8")
-    bound = {"textures": [], "uniforms": [], "inputs": ["tangent", "page"]}
+    bound = {"directives": "", "textures": [], "uniforms": [], "inputs": ["tangent", "page"]}
     shader = Shader(tmp_path, {"texts": {language: piece + ENTRIES[language]}, **bound})
     code = getattr(wrappers, language)(shader, None)
     if language != "wgsl":
