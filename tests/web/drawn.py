@@ -8,11 +8,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from irradia.bake.directional_modes import DirectionalName
 from irradia.scene.load import load_scene
 
 from .made_light import FIELDS, WIDE_FIELDS, bounds, made_field, read_field, write_made_scene
-from .pixels import CHANNELS, Answer, BakedReference, Image, Pixels, ask, field_irradiance, view_of
+from .pixels import BACKENDS, CHANNELS, Answer, BakedReference, Image, Pixels, ask, field_irradiance, view_of
 
 SIZES = {"cornell": (64, 64), "atrium": (160, 90)}
 LIGHTS: dict[str, tuple[DirectionalName, bool]] = {
@@ -24,15 +26,21 @@ LIGHTS: dict[str, tuple[DirectionalName, bool]] = {
 }
 FIRST = "sh"
 SOURCES = [
-    *((FIRST, source) for source in ("lightmap", "directional", "probes", *FIELDS)),
+    *(
+        (FIRST, source)
+        for source in ("lightmap", "directional", "probes", "three-probes", *FIELDS, *WIDE_FIELDS)
+    ),
     ("mono-sh", "directional"),
     ("mono-sh", "probes"),
     ("dominant", "directional"),
     ("rnm", "directional"),
 ]
-# What cornell alone shows: the atrium takes long to draw without a GPU.
-WIDE = [(FIRST, source) for source in WIDE_FIELDS]
 PASSES = [(source, how) for source in ("probes", "hash-int8", "sh", "indirect") for how in ("full", "half")]
+# The atrium takes long to draw without a GPU: there WebGPURenderer's second backend is left out.
+PAIRS = [
+    *(pytest.param("cornell", backend) for backend in BACKENDS),
+    *(pytest.param("atrium", backend, marks=pytest.mark.slow) for backend in ("webgl", "webgpu")),
+]
 
 
 @dataclass(frozen=True)
@@ -71,7 +79,7 @@ class Drawn:
         """The picture by one source of a light, worked out."""
         baked, pixels = BakedReference(self.scene.lights[light]), self.pixels
         if source not in self.scene.fields:
-            return pixels.picture(getattr(baked, source)(pixels))
+            return pixels.picture(getattr(baked, source.replace("-", "_"))(pixels))
         field = read_field(self.scene.fields[source])
         irradiance = field_irradiance(field, pixels)
         if field.frame.quantity == "indirect":
@@ -108,10 +116,9 @@ def draw_scene(
 
 def _wishes(scene: MadeScene, light: str) -> dict[str, Any]:
     """What is asked for in one light."""
-    is_small = scene.name == "cornell"
-    sources = [source for of, source in (*SOURCES, *WIDE * is_small) if of == light]
+    sources = [source for of, source in SOURCES if of == light]
     pictures = {source: {"source": source, "how": "inline"} for source in sources}
-    if is_small and light == FIRST:
+    if light == FIRST:
         pictures |= {f"{source} {how}": {"source": source, "how": how} for source, how in PASSES}
     return {
         "scene": f"/{light}.glb",

@@ -30,7 +30,7 @@ from irradia.export.direct_extension import read_direct
 from irradia.export.probes_extension import read_baked_probes
 from irradia.export.read_baked import BakedScene, read_baked
 from irradia.field.field import Field
-from irradia.formats.probes import ProbeSet
+from irradia.formats.probes import ProbeGrid, ProbeSet
 from irradia.scene.types import Camera
 
 Backend = str
@@ -173,6 +173,22 @@ class BakedReference:
         series = interpolate(self._probes, pixels.position, pixels.surface_normal)
         return np.maximum(irradiance(series, pixels.normal), 0.0)
 
+    def three_probes(self, pixels: Pixels) -> Image:
+        """Of all probes around, walls or not, half a cell before the surface: three.js' own light probes."""
+        grid = self._probes.structure
+        assert isinstance(grid, ProbeGrid)
+        at = (pixels.position - grid.origin) / grid.spacing + 0.5 * pixels.normal
+        at = np.clip(at, 0.0, np.array(grid.shape) - 1.0)
+        low = np.minimum(np.floor(at), np.array(grid.shape) - 2.0)
+        nx, ny, nz = grid.shape
+        lattice = self._probes.coefficients.reshape(nz, ny, nx, 9, 3)
+        series = np.zeros((len(at), 9, 3))
+        for step in np.ndindex(2, 2, 2):
+            x, y, z = (low + step).astype(np.int64).T
+            weight = np.prod(np.abs(1.0 - np.array(step) - (at - low)), axis=1)
+            series += weight[:, None, None] * lattice[z, y, x]
+        return np.maximum(irradiance(series, pixels.normal), 0.0)
+
     def _texels(self, pages: NDArray[np.float32], pixels: Pixels) -> Image:
         uv, number = pixels.lightmap_rows
         instance = np.array([self._instances[tuple(row)] for row in number.tolist()])
@@ -216,7 +232,7 @@ def unit(vectors: Image) -> Image:
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
-def steps_apart(drawn: Image, expected: Image) -> Image:
+def srgb_steps(drawn: Image, expected: Image) -> Image:
     """(N, 3) differences in steps of 8-bit sRGB, where four fifths of what was expected aren't clipped."""
     exposure = 1.0 / np.quantile(expected, 0.8)
     shown = [255.0 * srgb_from_linear(exposure * picture) for picture in (drawn, expected)]

@@ -7,17 +7,12 @@ import pytest
 
 from irradia.scene.load import load_scene
 
-from .drawn import SOURCES, WIDE
-from .pixels import BACKENDS, steps_apart
+from .drawn import PAIRS, SOURCES
+from .pixels import srgb_steps
 
 MAX_STEPS = 2.0  # of 255
 SUBPIXEL = 1 / 16  # to which rasterisers may round vertices
-CORNELL = [("cornell", backend) for backend in BACKENDS]
-# The atrium takes long to draw without a GPU: there WebGPURenderer's second backend is left out.
-ATRIUM = [("atrium", "webgl"), ("atrium", "webgpu")]
-CASES = [(*pair, *source) for pair in CORNELL for source in (*SOURCES, *WIDE)]
-SLOW_CASES = [pytest.param(*pair, *source, marks=pytest.mark.slow) for pair in ATRIUM for source in SOURCES]
-PAIRS = [*CORNELL, *(pytest.param(*pair, marks=pytest.mark.slow) for pair in ATRIUM)]
+CASES = [pytest.param(*pair.values, *source, marks=pair.marks) for pair in PAIRS for source in SOURCES]
 
 
 @pytest.mark.parametrize(("name", "backend"), PAIRS)
@@ -39,9 +34,9 @@ def test_positions_lie_behind_their_pixels(draw, name: str, backend: str) -> Non
     assert np.quantile(np.maximum(across, along), 0.998) <= SUBPIXEL
 
 
-@pytest.mark.parametrize(("name", "backend", "light", "source"), [*CASES, *SLOW_CASES])
+@pytest.mark.parametrize(("name", "backend", "light", "source"), CASES)
 def test_pixels_are_those_of_the_reference(draw, name: str, backend: str, light: str, source: str) -> None:
     drawn = draw(name, backend)
     expected = drawn.expected(light, source)
     assert (expected > 0.1 * np.quantile(expected, 0.8)).mean() > 0.3  # there is something to see
-    assert steps_apart(drawn.found(light, source), expected).max() <= MAX_STEPS
+    assert srgb_steps(drawn.found(light, source), expected).max() <= MAX_STEPS

@@ -27,6 +27,24 @@ export interface ScreenPass {
   dispose(): void;
 }
 
+/** Draws into a target, behind a pass. */
+export function showFrame<Target>(
+  renderer: {
+    setRenderTarget(target: Target): void;
+    clear(): void;
+    render(scene: Scene, camera: Camera): void;
+  },
+  target: Target,
+  scene: Scene,
+  camera: Camera,
+  pass: ScreenPass | undefined,
+): void {
+  renderer.setRenderTarget(target);
+  pass?.render(scene, camera);
+  renderer.clear();
+  renderer.render(scene, camera);
+}
+
 /** By number in shaders; the first two leave the picture as it is. */
 export const CHANNELS: readonly Channel[] = [
   "unlit",

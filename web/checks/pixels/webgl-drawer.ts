@@ -11,7 +11,7 @@ import {
   WebGLRenderer,
   WebGLRenderTarget,
 } from "three";
-import { CHANNELS, type Drawer, flipped, type ScreenPass } from "./drawer.js";
+import { CHANNELS, type Drawer, flipped, type ScreenPass, showFrame } from "./drawer.js";
 import type { Channel, Picture } from "./request.js";
 
 const VARYINGS = `
@@ -68,10 +68,7 @@ export class WebglDrawer implements Drawer {
   }
 
   show(scene: Scene, camera: Camera, pass?: ScreenPass): void {
-    this.renderer.setRenderTarget(this.#target);
-    pass?.render(scene, camera);
-    this.renderer.clear();
-    this.renderer.render(scene, camera);
+    showFrame(this.renderer, this.#target, scene, camera, pass);
   }
 
   /** Reading a pixel waits for it; `finish` of WebGL may not. */

@@ -29,7 +29,7 @@ import {
   RenderTarget,
   WebGPURenderer,
 } from "three/webgpu";
-import { CHANNELS, type Drawer, flipped, type ScreenPass } from "./drawer.js";
+import { CHANNELS, type Drawer, flipped, type ScreenPass, showFrame } from "./drawer.js";
 import type { Backend, Channel, Picture } from "./request.js";
 
 export class WebgpuDrawer implements Drawer {
@@ -68,10 +68,7 @@ export class WebgpuDrawer implements Drawer {
   }
 
   show(scene: Scene, camera: Camera, pass?: ScreenPass): void {
-    this.renderer.setRenderTarget(this.#target);
-    pass?.render(scene, camera);
-    this.renderer.clear();
-    this.renderer.render(scene, camera);
+    showFrame(this.renderer, this.#target, scene, camera, pass);
   }
 
   async finish(): Promise<void> {
