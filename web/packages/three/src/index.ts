@@ -4,6 +4,7 @@ import { pluginOf } from "./core/plugin.js";
 import type { IrradiaOptions, IrradiaPlugin } from "./types.js";
 import { WebGLPainter } from "./webgl/painter.js";
 
+export { readyUnzstd } from "./core/unzstd.js";
 export { IrradiancePass, type IrradiancePassOptions } from "./pass/webgl-pass.js";
 export type {
   DirectFrom,

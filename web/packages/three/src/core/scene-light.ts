@@ -267,8 +267,12 @@ export class BakedSceneLight implements SceneLight {
 
   #apply(): void {
     this.#wasValidityShown ||= this.#view === "validity" && this.#shownValidity !== undefined;
+    const shadings = new Map<string, Shading>();
     for (const surface of this.#surfaces.values()) {
-      this.#wardrobe.dress(surface.mesh, this.#shadingOf(surface));
+      const kind = `${surface.rectangles.length > 0} ${surface.isDynamic}`;
+      const shading = shadings.get(kind) ?? this.#shadingOf(surface);
+      shadings.set(kind, shading);
+      this.#wardrobe.dress(surface.mesh, shading);
     }
     this.#firstBounce.shine(this.#source);
     this.#showGrid(this.#source.kind === "three-probes");
@@ -293,6 +297,7 @@ export class BakedSceneLight implements SceneLight {
     }
   }
 
+  /** Alike for all surfaces that are alike in having a place in the lightmap, and in being dynamic. */
   #shadingOf({ rectangles, isDynamic }: LitSurface): Shading {
     const hasLightmap = rectangles.length > 0;
     const screen = this.#isScreened ? this.#screen : undefined;

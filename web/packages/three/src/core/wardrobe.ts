@@ -17,6 +17,7 @@ export class Wardrobe {
   readonly #lights = new WeakMap<Material, Shading["light"]>();
   /** What meshes came with that are drawn twice. */
   readonly #split = new WeakMap<Material[], Material>();
+  readonly #keys = new WeakMap<Shading, string>();
   readonly #ids = new WeakMap<object, number>();
 
   constructor(painter: Painter) {
@@ -86,7 +87,8 @@ export class Wardrobe {
   #copyOf(original: Material, shading: Shading): Material {
     const copies = this.#copies.get(original) ?? new Map<string, Material>();
     this.#copies.set(original, copies);
-    const key = this.#keyOf(shading);
+    const key = this.#keys.get(shading) ?? this.#keyOf(shading);
+    this.#keys.set(shading, key);
     const copy = copies.get(key) ?? this.#copy(original, shading, key);
     copies.set(key, copy);
     return copy;

@@ -32,6 +32,7 @@ export interface WebGPUOptions extends IrradiaOptions {
    */
   readonly precision?: Precision | undefined;
 }
+export { readyUnzstd } from "../core/unzstd.js";
 
 /**
  * A plugin for GLTFLoader: `new GLTFLoader().register(irradia())`. The scene that comes is lit; its light is at
