@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from irradia.transport.gbuffer import picture_under
 from irradia.transport.render import RenderOptions
 
-from .pixels import BACKENDS, view_of
+from .pixels import BACKENDS, ask, view_of
 from .swatches import COLUMNS, light_of, means, swatches, write_swatches
 
 WIDTH_PX, HEIGHT_PX = 176, 44
@@ -105,6 +105,26 @@ def test_live_lights_are_reflected_as_evenly(shots) -> None:
     np.testing.assert_allclose(
         means(shots["lit"]["baked"]["picture"])[1], _reference("realtime")[1], rtol=0.01
     )
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_passes_over_the_screen_see_through_panes(
+    files, web_check, chromium: str, tmp_path: Path, backend: str
+) -> None:
+    kinds = ("inline", "full", "half")
+    request = {
+        "backend": backend,
+        "scene": "/dark.glb",
+        "view": view_of(swatches().cameras[0], WIDTH_PX, HEIGHT_PX),
+        "channels": [],
+        "fields": {},
+        "pictures": {how: {"source": "field", "how": how, "surfacesAs": "baked"} for how in kinds},
+    }
+    (answer,) = ask(web_check, chromium, tmp_path, [request], {"/dark.glb": files["dark"]})
+    inline, full, half = (means(answer.pictures[how][..., :3].astype(np.float32)) for how in kinds)
+    assert inline.min() > 0.005
+    np.testing.assert_allclose(full, inline, rtol=1e-3)
+    np.testing.assert_allclose(half, inline, rtol=0.01)
 
 
 def test_full_materials_are_darker_and_come_back_unchanged(shots, reference) -> None:

@@ -35,7 +35,7 @@ async function drawChannels(
   const objects = numberObjects(gltf);
   const ambient = new AmbientLight(0xffffff, 1);
   const scene = new Scene().add(gltf.scene, ambient);
-  hideSeeThrough(scene);
+  for (const mesh of seeThroughOf(scene)) mesh.visible = false;
   const show = drawer.showChannels(scene);
   for (const channel of channels) {
     ambient.intensity = channel === "white" ? 1 : 0;
@@ -58,9 +58,10 @@ async function drawPictures(
     light.add(name, fieldShader(readField(new Uint8Array(bytes)), drawer.limits));
   }
   const scene = new Scene().add(gltf.scene);
-  hideSeeThrough(scene);
-  for (const [name, { source, how }] of Object.entries(request.pictures)) {
-    light.use(source);
+  const seeThrough = seeThroughOf(scene);
+  for (const [name, { source, how, surfacesAs = "materials" }] of Object.entries(request.pictures)) {
+    for (const mesh of seeThrough) mesh.visible = surfacesAs === "baked";
+    light.show({ source, surfacesAs });
     const pass = drawer.newPass(light, how);
     pictures.set(name, await drawer.draw(scene, cameraOf(request.view), pass));
     pass?.dispose();
@@ -68,12 +69,14 @@ async function drawPictures(
 }
 
 /** What shows through a surface isn't told by what the surface's pixel shows. */
-function hideSeeThrough(scene: Object3D): void {
+function seeThroughOf(scene: Object3D): Mesh[] {
+  const found: Mesh[] = [];
   scene.traverse((object) => {
     if (!(object instanceof Mesh)) return;
     const { transparent, transmission = 0 } = object.material;
-    object.visible = !transparent && transmission === 0;
+    if (transparent || transmission > 0) found.push(object);
   });
+  return found;
 }
 
 /** Gives each mesh attributes for its number and its lightmap's uv, the set that the file says. */

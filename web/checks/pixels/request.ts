@@ -24,6 +24,8 @@ export interface Picture {
   source: string;
   /** Evaluated by materials, or by a pass over the screen at full or half resolution. */
   how: "inline" | "full" | "half";
+  /** As materials by default; only as baked are see-through surfaces drawn. */
+  surfacesAs?: "materials" | "baked";
 }
 
 /** Pictures are RGBA in floats, linear, rows from the top; in base64, since JSON of floats is slow. */

@@ -6,6 +6,7 @@ import type { GLTFParser } from "three/addons/loaders/GLTFLoader.js";
 import { FileLights } from "../src/core/file-lights.js";
 import { BakedSceneLight } from "../src/core/scene-light.js";
 import { textureOf } from "../src/core/textures.js";
+import type { SurfacesAs } from "../src/types.js";
 import { CountedMesh, disposals, madePainter, madeShader } from "./made.js";
 
 function litScene(): { light: BakedSceneLight; mesh: CountedMesh } {
@@ -77,6 +78,8 @@ test("a change that is refused changes nothing", () => {
   const { light } = litScene();
   assert.throws(() => light.show({ view: "normal", source: "nobody" }), InputError);
   assert.throws(() => light.show({ view: "normal", dynamicSource: "none" }), InputError);
+  const surfacesAs = "painted" as SurfacesAs;
+  assert.throws(() => light.show({ view: "normal", surfacesAs }), InputError);
   assert.equal(light.view, null);
 });
 
