@@ -8,7 +8,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from irradia.bake.directional_modes import DirectionalName
 from irradia.scene.load import load_scene
@@ -16,6 +18,7 @@ from irradia.scene.load import load_scene
 from .made_light import FIELDS, WIDE_FIELDS, bounds, made_field, read_field, write_made_scene
 from .pixels import BACKENDS, CHANNELS, Answer, BakedReference, Image, Pixels, ask, field_irradiance, view_of
 
+SUBPIXEL = 1 / 16  # to which rasterisers may round vertices
 SIZES = {"cornell": (64, 64), "atrium": (160, 90)}
 LIGHTS: dict[str, tuple[DirectionalName, bool]] = {
     # by name: mode of the directional maps, and whether probes stand in an octree
@@ -74,6 +77,20 @@ class Drawn:
     def pixels(self) -> Pixels:
         """What they show, whatever the light."""
         return Pixels(self.answers[FIRST])
+
+    @cached_property
+    def offsets(self) -> NDArray[np.float64]:
+        """(N,) how far from their pixels' middle the positions lie that these show, in pixels."""
+        camera = load_scene(f"builtin:{self.scene.name}").cameras[0]
+        assert camera.yfov_rad is not None
+        camera_from_world = np.linalg.inv(camera.world_from_camera)
+        x, y, z = (self.pixels.position @ camera_from_world[:3, :3].T + camera_from_world[:3, 3]).T
+        height, width = self.pixels.hit.shape
+        scale = 0.5 * height / np.tan(0.5 * camera.yfov_rad)
+        rows, columns = np.nonzero(self.pixels.hit)
+        across = np.abs(0.5 * width + scale * x / -z - columns - 0.5)
+        along = np.abs(0.5 * height - scale * y / -z - rows - 0.5)
+        return np.maximum(across, along)
 
     def expected(self, light: str, source: str) -> Image:
         """The picture by one source of a light, worked out."""

@@ -174,10 +174,14 @@ class BakedReference:
         return np.maximum(irradiance(series, pixels.normal), 0.0)
 
     def three_probes(self, pixels: Pixels) -> Image:
-        """Of all probes around, walls or not, half a cell before the surface: three.js' own light probes."""
+        """Of all probes around, walls or not, half a cell before the surface: three.js' own light probes.
+
+        Outside of their cells there is none.
+        """
         grid = self._probes.structure
         assert isinstance(grid, ProbeGrid)
         at = (pixels.position - grid.origin) / grid.spacing + 0.5 * pixels.normal
+        is_inside = np.all((at >= -0.51) & (at <= np.array(grid.shape) - 0.49), axis=1)
         at = np.clip(at, 0.0, np.array(grid.shape) - 1.0)
         low = np.minimum(np.floor(at), np.array(grid.shape) - 2.0)
         nx, ny, nz = grid.shape
@@ -187,7 +191,7 @@ class BakedReference:
             x, y, z = (low + step).astype(np.int64).T
             weight = np.prod(np.abs(1.0 - np.array(step) - (at - low)), axis=1)
             series += weight[:, None, None] * lattice[z, y, x]
-        return np.maximum(irradiance(series, pixels.normal), 0.0)
+        return np.maximum(irradiance(series, pixels.normal), 0.0) * is_inside[:, None]
 
     def _texels(self, pages: NDArray[np.float32], pixels: Pixels) -> Image:
         uv, number = pixels.lightmap_rows
