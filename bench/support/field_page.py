@@ -105,13 +105,20 @@ def _scene(rows: Sequence[Row], scene: str) -> list[str]:
             f"{view['relmse_noise_free']:.1e}",
             _maybe(row["space"], lambda space: f"{space['mse_noise_free']:.2e}"),
             _maybe(row["leaks"], lambda leaks: "–" if leaks["ratio"] is None else f"{leaks['ratio']:.2f}"),
-            _maybe(row.get("trained"), lambda trained: f"{trained['steps']:,} × {trained['batch_size']:,}"),
+            _steps(row),
         )
         lines.append(f"| {' | '.join(cells)} |")
     noise = [row["views"][0]["flip"]["noise"] for row in here]
     if noise:
         lines += ["", f"The reference's own noise is worth an HDR-FLIP of {max(noise):.4f}. {_scored(here)}"]
     return lines
+
+
+def _steps(row: Row) -> str:
+    trained = row.get("trained")
+    if not trained:
+        return "–"
+    return f"{trained['steps']:,} × {trained['batch_size']:,} in {row['settings']['train_s']:g} s"
 
 
 def _scored(rows: Sequence[Row]) -> str:
@@ -149,13 +156,13 @@ def _facts(rows: Sequence[Row], arguments: Sequence[str]) -> list[str]:
     commits = ", ".join(dict.fromkeys(str(row["commit"])[:12] for row in rows))
     cpus = ", ".join(dict.fromkeys(row["cpu"] for row in rows))
     settings = rows[-1]["settings"]
+    train_s = " or ".join(f"{s:g}" for s in sorted({row["settings"]["train_s"] for row in rows}))
     return [
         "Bytes are those of the file: tables in 8 bits, the perceptron in halves, packed by zstd; "
         "frequencies have no tables, and the largest perceptron that specs allow has about 180 kB.",
         "",
         f"- Command: `{shlex.join(['python', 'bench/field_quality.py', *arguments])}`",
-        f"- Training: {settings['train_s']:g} s a point, {settings['samples']:,} samples of "
-        f"{settings['rays']} rays",
+        f"- Training: {train_s} s a point, {settings['samples']:,} samples of {settings['rays']} rays",
         f"- Machine: {cpus}; commits: {commits}",
     ]
 
