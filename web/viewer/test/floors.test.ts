@@ -67,3 +67,12 @@ test("it finds what a search through all triangles finds", () => {
   }
   assert.ok(nHits > 50);
 });
+
+test("triangles as large as the plan are found, and take no more room than others", () => {
+  const corners = new Float32Array(9 * 20_000);
+  for (let i = 0; i < 20_000; i += 1) {
+    const y = i / 20_000;
+    corners.set([0, y, 0, 100, y, 0, 0, y, 100], 9 * i);
+  }
+  close(new Floors(corners).distance([20, 2, 20], [0, -1, 0]), 2 - 19_999 / 20_000);
+});

@@ -3,6 +3,8 @@
 /** Triangles that a square should hold, on average. */
 const PER_SQUARE = 2;
 const MOST_SQUARES_A_SIDE = 1024;
+/** Squares that a triangle may lie in, on average; where they are so large, so are squares. */
+const MOST_SQUARES = 16;
 
 type Xyz = readonly [x: number, y: number, z: number];
 
@@ -10,9 +12,9 @@ export class Floors {
   /** Nine numbers a triangle: its corners in world space. */
   readonly #corners: Float32Array;
   readonly #low: readonly [x: number, z: number];
-  readonly #side: number;
-  readonly #nX: number;
-  readonly #nZ: number;
+  #side: number;
+  #nX = 1;
+  #nZ = 1;
   /** Where in `#members` each square's triangles begin. */
   readonly #starts: Uint32Array;
   readonly #members: Uint32Array;
@@ -27,9 +29,16 @@ export class Floors {
     const side = Math.sqrt((width * depth * PER_SQUARE) / Math.max(count, 1));
     this.#low = [lowX, lowZ];
     this.#side = Math.max(side, Math.max(width, depth) / MOST_SQUARES_A_SIDE) || 1;
-    this.#nX = Math.max(1, Math.ceil(width / this.#side));
-    this.#nZ = Math.max(1, Math.ceil(depth / this.#side));
-    [this.#starts, this.#members] = this.#sort(count);
+    let reaches: Uint16Array;
+    for (;;) {
+      this.#nX = Math.max(1, Math.ceil(width / this.#side));
+      this.#nZ = Math.max(1, Math.ceil(depth / this.#side));
+      reaches = this.#reaches(count);
+      if (nMembers(reaches) <= MOST_SQUARES * count) break;
+      this.#side *= 2;
+    }
+    this.#starts = startsOf(reaches, this.#nX, this.#nZ);
+    this.#members = membersOf(reaches, this.#nX, this.#starts);
   }
 
   /**
@@ -60,38 +69,19 @@ export class Floors {
     }
   }
 
-  /** By counting: how many each square has, then where each square's begin, then which. */
-  #sort(count: number): [Uint32Array, Uint32Array] {
-    const starts = new Uint32Array(this.#nX * this.#nZ + 1);
+  /** First and last column, first and last row of each triangle. */
+  #reaches(count: number): Uint16Array {
+    const reaches = new Uint16Array(4 * count);
+    const corners = this.#corners;
     for (let i = 0; i < count; i += 1) {
-      for (const square of this.#squares(i)) starts[square + 1] = (starts[square + 1] ?? 0) + 1;
+      const [ax, bx, cx] = [corners[9 * i] ?? 0, corners[9 * i + 3] ?? 0, corners[9 * i + 6] ?? 0];
+      const [az, bz, cz] = [corners[9 * i + 2] ?? 0, corners[9 * i + 5] ?? 0, corners[9 * i + 8] ?? 0];
+      reaches[4 * i] = Math.min(this.#column(Math.min(ax, bx, cx)), this.#nX - 1);
+      reaches[4 * i + 1] = Math.min(this.#column(Math.max(ax, bx, cx)), this.#nX - 1);
+      reaches[4 * i + 2] = Math.min(this.#row(Math.min(az, bz, cz)), this.#nZ - 1);
+      reaches[4 * i + 3] = Math.min(this.#row(Math.max(az, bz, cz)), this.#nZ - 1);
     }
-    for (let square = 1; square < starts.length; square += 1) {
-      starts[square] = (starts[square] ?? 0) + (starts[square - 1] ?? 0);
-    }
-    const members = new Uint32Array(starts.at(-1) ?? 0);
-    const next = starts.slice();
-    for (let i = 0; i < count; i += 1) {
-      for (const square of this.#squares(i)) {
-        const at = next[square] ?? 0;
-        members[at] = i;
-        next[square] = at + 1;
-      }
-    }
-    return [starts, members];
-  }
-
-  *#squares(triangle: number): Generator<number> {
-    const own = this.#corners.subarray(9 * triangle, 9 * triangle + 9);
-    const [lowX, highX] = range(own, 0);
-    const [lowZ, highZ] = range(own, 2);
-    const [lastX, lastZ] = [this.#nX - 1, this.#nZ - 1];
-    for (let row = Math.min(this.#row(lowZ), lastZ); row <= Math.min(this.#row(highZ), lastZ); row += 1) {
-      const first = Math.min(this.#column(lowX), lastX);
-      for (let column = first; column <= Math.min(this.#column(highX), lastX); column += 1) {
-        yield row * this.#nX + column;
-      }
-    }
+    return reaches;
   }
 
   #column(x: number): number {
@@ -100,6 +90,55 @@ export class Floors {
 
   #row(z: number): number {
     return Math.floor((z - this.#low[1]) / this.#side);
+  }
+}
+
+function nMembers(reaches: Uint16Array): number {
+  let n = 0;
+  for (let i = 0; i < reaches.length; i += 4) {
+    const [columns, rows] = [
+      (reaches[i + 1] ?? 0) - (reaches[i] ?? 0) + 1,
+      (reaches[i + 3] ?? 0) - (reaches[i + 2] ?? 0) + 1,
+    ];
+    n += columns * rows;
+  }
+  return n;
+}
+
+/** Where each square's triangles begin in a list of all. */
+function startsOf(reaches: Uint16Array, nX: number, nZ: number): Uint32Array {
+  const starts = new Uint32Array(nX * nZ + 1);
+  eachSquare(reaches, nX, (square) => {
+    starts[square + 1] = (starts[square + 1] ?? 0) + 1;
+  });
+  for (let square = 1; square < starts.length; square += 1) {
+    starts[square] = (starts[square] ?? 0) + (starts[square - 1] ?? 0);
+  }
+  return starts;
+}
+
+function membersOf(reaches: Uint16Array, nX: number, starts: Uint32Array): Uint32Array {
+  const members = new Uint32Array(starts.at(-1) ?? 0);
+  const next = starts.slice();
+  eachSquare(reaches, nX, (square, triangle) => {
+    const at = next[square] ?? 0;
+    members[at] = triangle;
+    next[square] = at + 1;
+  });
+  return members;
+}
+
+function eachSquare(
+  reaches: Uint16Array,
+  nX: number,
+  tell: (square: number, triangle: number) => void,
+): void {
+  for (let i = 0; i < reaches.length; i += 4) {
+    for (let row = reaches[i + 2] ?? 0; row <= (reaches[i + 3] ?? 0); row += 1) {
+      for (let column = reaches[i] ?? 0; column <= (reaches[i + 1] ?? 0); column += 1) {
+        tell(row * nX + column, i / 4);
+      }
+    }
   }
 }
 

@@ -15,6 +15,8 @@ const UP = [0, 1, 0] as const;
 export class Ground {
   readonly #model: Object3D;
   #floors: Floors | undefined;
+  /** As frames ask again and again for someone who stands still. */
+  #last: { readonly place: Vector3; readonly height: number | undefined } | undefined;
 
   constructor(model: Object3D) {
     this.#model = model;
@@ -25,7 +27,12 @@ export class Ground {
    *
    * @returns metres, world space; undefined where there is no floor
    */
-  eyeHeight({ x, y, z }: Vector3): number | undefined {
+  eyeHeight(place: Vector3): number | undefined {
+    if (!this.#last?.place.equals(place)) this.#last = { place: place.clone(), height: this.#find(place) };
+    return this.#last.height;
+  }
+
+  #find({ x, y, z }: Vector3): number | undefined {
     const floor = this.#all.distance([x, y, z], DOWN);
     if (floor === undefined) return undefined;
     const feet = y - floor;
