@@ -53,6 +53,17 @@ export class Driver {
     return this.told();
   }
 
+  /** Drops a file or a folder of this machine, as a file manager does. */
+  async dropPath(path: string): Promise<void> {
+    const session = await this.page.context().newCDPSession(this.page);
+    const data = { items: [], files: [path], dragOperationsMask: 1 };
+    const waiting = this.page.evaluate(untilOpened);
+    for (const type of ["dragEnter", "dragOver", "drop"] as const) {
+      await session.send("Input.dispatchDragEvent", { type, x: 100, y: 100, data });
+    }
+    await waiting;
+  }
+
   async set(patch: Record<string, unknown>): Promise<void> {
     await this.page.evaluate(async (wanted) => {
       irradiaViewer.state.set(wanted);
@@ -116,4 +127,17 @@ async function dropped(groups: string[][]): Promise<void> {
     document.body.dispatchEvent(new DragEvent("drop", options));
   }
   await done;
+}
+
+/** Resolves when the page has begun to open something and is done with it. */
+function untilOpened(): Promise<void> {
+  return new Promise((resolve) => {
+    let hasBegun = false;
+    const end = irradiaViewer.status.subscribe(({ isOpening }) => {
+      hasBegun ||= isOpening;
+      if (!hasBegun || isOpening) return;
+      end();
+      resolve();
+    });
+  });
 }

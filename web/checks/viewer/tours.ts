@@ -1,4 +1,7 @@
 /** What tests look at, several things in one browser, as a browser takes its time to start. */
+import { mkdtemp, writeFile } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import type { CDPSession } from "playwright-core";
 import type { Driver, Told } from "./driver.js";
 
 type Tour = (driver: Driver) => Promise<Record<string, unknown>>;
@@ -61,12 +64,16 @@ async function sides(driver: Driver): Promise<Record<string, unknown>> {
   await driver.set({ compare: "error" });
   pictures.error = await driver.picture();
   const shown = await driver.texts(".numbers");
+  await driver.set({ probes: "dc", object: "sphere", compare: "difference" });
+  const withGuests = await driver.status("difference");
+  pictures.guests = await driver.picture();
+  await driver.set({ probes: "off", object: "off" });
   await driver.set({ left: "three-probes", compare: "single" });
   pictures["three-probes"] = await driver.picture();
   await driver.set({ left: "lightmap", right: "lightmap", compare: "error" });
   const same = await driver.status("difference");
   pictures.noError = await driver.picture();
-  return { pictures, split, numbers, shown, same };
+  return { pictures, split, numbers, shown, withGuests, same };
 }
 
 /** Each view, of the field and of the lightmap. */
@@ -82,17 +89,18 @@ async function views(driver: Driver): Promise<Record<string, unknown>> {
   const ofProbes = await driver.status("views");
   await driver.set({ view: "validity" });
   pictures.validity = await driver.picture();
-  await driver.set({ view: "light" });
+  await driver.set({ view: "light", tone: "linear" });
   for (const probes of ["off", "irradiance", "direction", "dc", "validity"]) {
     await driver.set({ probes });
     pictures[`probes ${probes}`] = await driver.picture();
   }
-  await driver.set({ probes: "off" });
+  const ev = await driver.status("ev");
+  await driver.set({ probes: "off", tone: "neutral" });
   for (const pass of ["full", "half"]) {
     await driver.set({ pass, left: "field" });
     pictures[`pass ${pass}`] = await driver.picture();
   }
-  return { possible: { ...possible, probes: ofProbes }, pictures };
+  return { possible: { ...possible, probes: ofProbes }, pictures, ev };
 }
 
 /** A link shows what its sender saw. */
@@ -104,7 +112,7 @@ async function links(driver: Driver): Promise<Record<string, unknown>> {
   const before = { state: await driver.state(), picture: await driver.picture() };
   await driver.page.waitForFunction(() => location.hash.includes("tone=aces"));
   const hash = await driver.page.evaluate(() => location.hash);
-  await driver.open(hash);
+  await driver.open(`?scene=${SCENE}${hash}`);
   const after = { state: await driver.state(), picture: await driver.picture() };
   await driver.page.evaluate(() => {
     location.hash = location.hash.replace("tone=aces", "tone=agx");
@@ -117,10 +125,9 @@ async function links(driver: Driver): Promise<Record<string, unknown>> {
   const plain = (await driver.state()).camera;
   await driver.settled();
   const home = await driver.picture();
-  await driver.open(`?scene=${SCENE}&left=lightmap&panel=0&tone=aces`);
+  await driver.open(`?scene=${SCENE}&left=lightmap`);
   const fresh = await driver.picture();
-  await driver.set({ tone: "neutral", camera, place: [0.3, 0.2, 0.2] });
-  await driver.page.waitForFunction(() => location.hash.includes("tone=neutral"));
+  await driver.set({ camera, place: [0.3, 0.2, 0.2] });
   await driver.dropOneAfterAnother([SCENE], ["/files/field.safetensors"], ["/files/render.png"]);
   const { camera: kept, place } = await driver.state();
   const dropped = { ids: await driver.page.evaluate(choiceIds), kept, place, told: await driver.told() };
@@ -138,9 +145,15 @@ async function hostile(driver: Driver): Promise<Record<string, unknown>> {
   }
   await driver.page.locator(".problem button").first().click();
   const closed = await driver.texts(".problem");
+  const focused = await driver.page.evaluate(() => document.activeElement?.className);
   const after = await driver.picture();
+  const folder = await mkdtemp(`${tmpdir()}/irradia-`);
+  await writeFile(`${folder}/notes.txt`, "not a scene");
+  await driver.dropPath(folder);
+  const folderTexts = await driver.texts(".problem");
   const lost = await driver.open("?scene=/files/nowhere.glb");
-  return { before, after, panels, closed, lost, lostTexts: await driver.texts(".problem") };
+  const lostTexts = await driver.texts(".problem");
+  return { before, after, panels, closed, focused, folderTexts, lost, lostTexts };
 }
 
 /** Hands on the picture: keys, pointer, fingers, windows of other sizes. */
@@ -167,6 +180,12 @@ async function hands(driver: Driver): Promise<Record<string, unknown>> {
   await page.keyboard.up("w");
   await driver.settled();
   const flown = (await driver.state()).camera;
+  await page.mouse.move(40, 100);
+  await page.mouse.down({ button: "right" });
+  await page.mouse.move(40, 112, { steps: 3 });
+  await page.mouse.up({ button: "right" });
+  await driver.settled();
+  const strode = (await driver.state()).camera;
   const inside = { eye: [0.3, 0.45, 0.15], target: [0.3, 0.3, 0.5], yfovDeg: 50 };
   await driver.set({ camera: inside, object: "off" });
   await page.keyboard.press("3");
@@ -180,6 +199,10 @@ async function hands(driver: Driver): Promise<Record<string, unknown>> {
   const isHelpOpen = await page.locator("dialog.help").isVisible();
   await page.keyboard.press("Escape");
   const { compare, navigation } = await driver.state();
+  await page.locator(".handle").focus();
+  await page.keyboard.press("ArrowRight");
+  await driver.settled();
+  const { split, camera: afterArrow } = await driver.state();
   await page.setViewportSize({ width: 200, height: 300 });
   await driver.settled();
   const size = await page.evaluate(canvasSize);
@@ -192,7 +215,14 @@ async function hands(driver: Driver): Promise<Record<string, unknown>> {
   await page.keyboard.press("n");
   const panel = await page.locator(".panel").boundingBox();
   const statistics = await driver.status("statistics");
+  await page.locator("label", { hasText: /^Fly$/ }).click();
+  await page.keyboard.press("v");
+  const afterRadio = await driver.state();
   return {
+    strode,
+    split,
+    afterArrow,
+    afterRadio,
     places,
     still,
     orbited,
@@ -206,6 +236,42 @@ async function hands(driver: Driver): Promise<Record<string, unknown>> {
     panel,
     statistics,
   };
+}
+
+/** A screen that is touched. */
+async function fingers(driver: Driver): Promise<Record<string, unknown>> {
+  const session = await driver.page.context().newCDPSession(driver.page);
+  await session.send("Emulation.setTouchEmulationEnabled", { enabled: true, maxTouchPoints: 2 });
+  const camera = { eye: [0.28, 0.27, -0.3], target: [0.28, 0.27, 0.2], yfovDeg: 50 };
+  await driver.open(`?scene=${SCENE}&left=lightmap&panel=0`);
+  await driver.set({ camera });
+  const see = async (): Promise<unknown> => {
+    await driver.settled();
+    return (await driver.state()).camera;
+  };
+  await touch(session, [[60, 100]], [40, 10]);
+  const orbited = await see();
+  await driver.set({ camera, navigation: "fly" });
+  await touch(session, [[60, 100]], [40, 10]);
+  const looked = await see();
+  await driver.set({ camera });
+  await touch(session, [[60, 100], [120, 100]], [0, 20]); // biome-ignore format: a pair of places
+  const strode = await see();
+  await driver.set({ compare: "split" });
+  await touch(session, [[128, 80]], [64, 0]);
+  const { split } = await driver.state();
+  return { orbited, looked, strode, split };
+}
+
+/** Fingers go down at some places and the same way together. */
+async function touch(session: CDPSession, places: number[][], way: number[]): Promise<void> {
+  const at = (share: number) =>
+    places.map(([x = 0, y = 0], id) => ({ x: x + share * (way[0] ?? 0), y: y + share * (way[1] ?? 0), id }));
+  await session.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: at(0) });
+  for (const share of [0.25, 0.5, 0.75, 1]) {
+    await session.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: at(share) });
+  }
+  await session.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
 }
 
 /** A browser without WebGPU, whose context is lost as well. */
@@ -260,6 +326,7 @@ export const TOURS: Readonly<Record<string, Tour>> = {
   links,
   hostile,
   hands,
+  fingers,
   webgl2,
   crash,
   kept,
