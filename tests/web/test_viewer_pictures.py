@@ -6,13 +6,20 @@ import itertools
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
+from irradia.core.colour import linear_from_srgb
+from irradia.scene.load import load_scene
+
+from .made_light import bounds, made_grid
+from .viewer_files import SCENE
 from .viewer_tours import Found, pixels, steps_apart
 
 MAGENTA = (255.0, 0.0, 255.0)  # of a view that a source lacks
 OF_SURFACES = {"light", "irradiance", "albedo", "normal", "depth", "uv"}
 OF_FIELDS = {"raw", "hidden", "unclamped", "position"}
 EXACT = 1.5  # in 255ths
+STATES = np.array([(0.18, 0.62, 0.3), (0.85, 0.5, 0.08), (0.7, 0.08, 0.06)])  # valid, filled, empty
 PROBES = ("off", "irradiance", "direction", "dc", "validity")
 
 
@@ -69,6 +76,12 @@ def test_numbers_of_both_are_shown(sides):
     assert f"FLIP {sides['numbers']['flip']:.4f}" in sides["shown"][0]
 
 
+def test_what_is_only_put_into_a_scene_counts_for_nothing(sides):
+    plain, guests = (pixels(sides["pictures"][name]) for name in ("difference", "guests"))
+    assert (np.abs(plain - guests).max(axis=2) > 8).mean() > 0.005, "they are in the picture"
+    assert sides["withGuests"] == pytest.approx(sides["numbers"])
+
+
 def test_a_source_does_not_differ_from_itself(sides):
     assert sides["same"]["flip"] < 1e-6
     assert sides["same"]["psnrDb"] is None  # infinity in JSON
@@ -115,10 +128,50 @@ def test_probes_stand_in_the_picture(views):
         assert 0.002 < changed.mean() < 0.6, mode
 
 
+def test_spheres_have_the_colours_of_their_states(views):
+    shown = of_spheres(views, "validity")
+    hues = shown / shown.max(axis=1, keepdims=True)
+    apart = np.abs(hues[:, None] - STATES / STATES.max(axis=1, keepdims=True)).max(axis=2)
+    assert np.percentile(apart.min(axis=1), 90) < 0.05
+    assert len(set(apart.argmin(axis=1))) == len(STATES), "some of each"
+
+
+def test_spheres_have_the_mean_light_of_their_probes(views):
+    shown = of_spheres(views, "dc")
+    means = made_grid(*bounds(load_scene(f"builtin:{SCENE}"))).coefficients[:, 0] * 0.282095
+    expected = np.clip(means * 2 ** views["ev"], 0, 1)
+    apart = np.abs(shown[:, None] - expected).max(axis=2).min(axis=1)
+    assert np.percentile(apart, 85) < 0.02, "but at edges, where two meet"
+
+
+def test_spheres_are_lit_as_a_surface_there_would_be(views):
+    mean, irradiance = (of_spheres(views, mode) for mode in ("dc", "irradiance"))
+    assert np.abs(irradiance - mean).mean() > 0.05 * mean.mean()
+    assert np.median(irradiance / np.maximum(mean, 1e-3)) == pytest.approx(1, abs=0.15)
+
+
+def test_spheres_have_a_spot_where_most_light_comes_from(views):
+    mean, spots = (of_spheres(views, mode) for mode in ("dc", "direction"))
+    share = (spots / np.maximum(mean, 1e-3))[mean.max(axis=1) < 0.95]
+    assert np.median(share) == pytest.approx(0.25, abs=0.03)
+    assert (share > 1.2).any()
+
+
+def of_spheres(views: Found, mode: str) -> NDArray:
+    """(n, 3) linear values of the pixels that a sphere covers, but for those at its edge."""
+    off, states = (pixels(views["pictures"][f"probes {name}"]) for name in ("off", "validity"))
+    covered = np.abs(states - off).max(axis=2) > 20
+    inner = covered.copy()
+    for axis, step in itertools.product((0, 1), (-1, 1)):
+        inner &= np.roll(covered, step, axis)
+    assert inner.sum() > 20
+    return linear_from_srgb(pixels(views["pictures"][f"probes {mode}"])[inner] / 255)
+
+
 def test_a_pass_over_the_screen_shows_what_materials_show(views):
     inline = pixels(views["pictures"]["light"])
     assert steps_apart(pixels(views["pictures"]["pass full"]), inline) <= 3
-    assert np.abs(pixels(views["pictures"]["pass half"]) - inline).mean() < 8
+    assert np.abs(pixels(views["pictures"]["pass half"]) - inline).mean() < 0.3
 
 
 def test_views_are_no_reason_to_complain(views):
