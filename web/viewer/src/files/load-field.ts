@@ -6,9 +6,8 @@ import {
   readField,
   readFieldBin,
   type TextureLimits,
-  type Unzstd,
 } from "@irradia/runtime";
-import { ZSTDDecoder } from "three/addons/libs/zstddec.module.js";
+import { readyUnzstd } from "@irradia/three/webgpu";
 import type { Model } from "../scene/model.js";
 import { kindOf, type NamedFile } from "./kinds.js";
 
@@ -42,10 +41,4 @@ export function addField(
   model.light.add(id, fieldShader(field, limits));
   model.fields.set(id, field);
   model.fieldBytes.set(id, bytes);
-}
-
-async function readyUnzstd(): Promise<Unzstd> {
-  const decoder = new ZSTDDecoder();
-  await decoder.init();
-  return (packed, nBytes) => decoder.decode(packed, nBytes);
 }
