@@ -174,5 +174,13 @@ def test_a_pass_over_the_screen_shows_what_materials_show(views):
     assert np.abs(pixels(views["pictures"]["pass half"]) - inline).mean() < 0.3
 
 
+def test_surfaces_as_baked_scatter_what_three_js_own_mirror(views):
+    baked, materials, again = (pixels(views["surfaces"][name]) for name in ("baked", "materials", "again"))
+    assert steps_apart(again, baked) <= EXACT
+    changed = np.abs(baked - materials).max(axis=2) > 0.5
+    assert 0.003 < changed.mean() < 0.02, "the sphere: walls have no specular part"
+    assert 0.7 < (baked - materials)[changed].mean() < 10
+
+
 def test_views_are_no_reason_to_complain(views):
     assert views["complaints"] == []

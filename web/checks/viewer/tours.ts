@@ -100,7 +100,15 @@ async function views(driver: Driver): Promise<Record<string, unknown>> {
     await driver.set({ pass, left: "field" });
     pictures[`pass ${pass}`] = await driver.picture();
   }
-  return { possible: { ...possible, probes: ofProbes }, pictures, ev };
+  const surfaces: Record<string, string> = {};
+  await driver.set({ pass: "inline", object: "sphere" }); // walls have no specular part
+  surfaces.baked = await driver.picture();
+  await driver.page.getByText("Materials", { exact: true }).dispatchEvent("click");
+  await driver.settled();
+  surfaces.materials = await driver.picture();
+  await driver.set({ surfaces: "baked" });
+  surfaces.again = await driver.picture();
+  return { possible: { ...possible, probes: ofProbes }, pictures, ev, surfaces };
 }
 
 /** A link shows what its sender saw. */

@@ -13,6 +13,7 @@ const OTHERWISE: ViewerState = {
   split: 0.25,
   gain: 32,
   view: "hidden",
+  surfaces: "materials",
   ev: -1.5,
   tone: "agx",
   camera: { eye: [1, 2.5, -3], target: [0, 1, 0.125], yfovDeg: 39.3076 },
@@ -56,7 +57,8 @@ test("what stands behind the hash wins over the query", () => {
 });
 
 test("values that make no sense leave the default", () => {
-  const nonsense = "?compare=both&split=2&gain=0&view=9&ev=bright&camera=1,2&place=1,2,x&panel=yes&tone=";
+  const nonsense =
+    "?compare=both&split=2&gain=0&view=9&surfaces=both&ev=bright&camera=1,2&place=1,2,x&panel=yes&tone=";
   assert.deepEqual(readState(nonsense, ""), DEFAULTS);
   assert.deepEqual(readState("?camera=0,0,0,0,0,0,45", "").camera, undefined);
 });

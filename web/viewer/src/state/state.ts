@@ -21,6 +21,10 @@ export const VIEWS = [
 /** The picture, or a part of how it comes about. */
 export type View = (typeof VIEWS)[number];
 
+export const SURFACES = ["baked", "materials"] as const;
+/** Each surface scatters all it reflects, as in the reference, or is what its material says, with highlights. */
+export type Surfaces = (typeof SURFACES)[number];
+
 export const TONES = ["neutral", "aces", "agx", "linear"] as const;
 export type Tone = (typeof TONES)[number];
 
@@ -60,6 +64,7 @@ export interface ViewerState {
   /** Differences are multiplied by it. */
   readonly gain: number;
   readonly view: View;
+  readonly surfaces: Surfaces;
   /** Stops; `auto` from the picture, `file` from what the file says. */
   readonly ev: number | "auto" | "file";
   readonly tone: Tone;
@@ -84,6 +89,7 @@ export const DEFAULTS: ViewerState = {
   split: 0.5,
   gain: 8,
   view: "light",
+  surfaces: "baked",
   ev: "file",
   tone: "neutral",
   camera: undefined,

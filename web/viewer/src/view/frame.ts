@@ -2,7 +2,7 @@
 import { IrradiancePass, type View as LightView, type SceneLight } from "@irradia/three/webgpu";
 import { type Camera, FloatType, type Scene, type WebGPURenderer } from "three/webgpu";
 import type { Picture } from "../files/picture.js";
-import type { Pass, View } from "../state/state.js";
+import type { Pass, Surfaces, View } from "../state/state.js";
 import { Composite, type CompositeOptions } from "./composite.js";
 import type { Difference } from "./difference.js";
 import { automaticEv } from "./exposure.js";
@@ -19,6 +19,7 @@ export interface FrameOptions extends Omit<CompositeOptions, "readings"> {
   readonly left: Side;
   readonly right: Side;
   readonly view: View;
+  readonly surfaces: Surfaces;
   readonly pass: Pass;
   readonly light: SceneLight;
 }
@@ -90,8 +91,8 @@ export class Frame {
       this.#references.draw(this.#renderer, side.picture, target);
       return;
     }
-    const { light, view, pass } = options;
-    showSource(light, side.source, view);
+    const { light, pass } = options;
+    showSource(side.source, options);
     this.#renderer.setRenderTarget(target);
     this.#passFor(light, pass)?.render(scene, camera);
     this.#renderer.render(scene, camera);
@@ -110,16 +111,19 @@ export class Frame {
 }
 
 /**
- * What moves takes the same light as the rest, where that is to be had everywhere. Each setter goes through all
- * surfaces, so none is called in vain.
+ * What moves takes the same light as the rest, where that is to be had everywhere; the light's screen is its pass's
+ * affair. A file that nothing was baked for is what its materials say.
  */
-function showSource(light: SceneLight, name: string, view: View): void {
-  if (light.source.name !== name) light.use(name);
-  const mobile = light.sources.filter((source) => source.isDynamic);
-  const dynamic = name === "none" ? undefined : (mobile.find((source) => source.name === name) ?? mobile[0]);
-  const [moving, shown] = [dynamic?.name ?? null, lightView(view)];
-  if (light.dynamicSource !== moving) light.dynamicSource = moving;
-  if (light.view !== shown) light.view = shown;
+function showSource(source: string, { light, view, surfaces, pass }: FrameOptions): void {
+  const mobile = light.sources.filter(({ isDynamic }) => isDynamic);
+  const dynamic = source === "none" ? undefined : (mobile.find(({ name }) => name === source) ?? mobile[0]);
+  light.show({
+    source,
+    dynamicSource: dynamic?.name ?? null,
+    view: lightView(view),
+    surfacesAs: light.sources.length > 1 ? surfaces : "materials",
+    ...(pass === "inline" ? { screen: null } : {}),
+  });
 }
 
 /** Whether a view's numbers are light, and so need exposure. */

@@ -1,5 +1,14 @@
 /** What the panel calls the values of the state. */
-import type { Comparison, Navigation, ObjectShape, Pass, ProbeView, Tone, View } from "../../state/state.js";
+import type {
+  Comparison,
+  Navigation,
+  ObjectShape,
+  Pass,
+  ProbeView,
+  Surfaces,
+  Tone,
+  View,
+} from "../../state/state.js";
 import type { Choice } from "../controls.js";
 
 export const COMPARISON_LABELS: Record<Comparison, string> = {
@@ -27,6 +36,11 @@ export const VIEW_HINTS: Partial<Record<View, string>> = {
   uv: "A square is 4 × 4 texels.",
   validity:
     "Green: texels that see all around them; red: inside something; blue: outside charts. Of probes: white where they are valid.",
+};
+export const SURFACES_LABELS: Record<Surfaces, string> = { baked: "As baked", materials: "Materials" };
+export const SURFACES_HINTS: Record<Surfaces, string> = {
+  baked: "Each surface scatters all it reflects, as in the reference",
+  materials: "three.js' own, with highlights",
 };
 export const PROBE_LABELS: Record<ProbeView, string> = {
   off: "Hidden",

@@ -1,10 +1,17 @@
 /** Which light is shown, and against what. */
-import { COMPARISONS, VIEWS, type ViewerState } from "../../state/state.js";
+import { COMPARISONS, SURFACES, VIEWS, type ViewerState } from "../../state/state.js";
 import type { Status } from "../../state/status.js";
 import type { Store } from "../../state/store.js";
 import type { Difference } from "../../view/difference.js";
 import { type Choice, note, section, segments, select, slider } from "../controls.js";
-import { COMPARISON_LABELS, choicesFrom, VIEW_HINTS, VIEW_LABELS } from "./labels.js";
+import {
+  COMPARISON_LABELS,
+  choicesFrom,
+  SURFACES_HINTS,
+  SURFACES_LABELS,
+  VIEW_HINTS,
+  VIEW_LABELS,
+} from "./labels.js";
 
 type States = Store<ViewerState>;
 type Statuses = Store<Status>;
@@ -15,6 +22,7 @@ export function lightSection(state: States, status: Statuses): HTMLElement {
     ...sideControls(state, status),
     numbersLine(status),
     ...viewControls(state, status),
+    surfacesControl(state, status),
     directLine(status),
   );
 }
@@ -94,6 +102,23 @@ function viewControls(state: States, status: Statuses): HTMLElement[] {
   );
   state.watch(({ view: value }) => value, update);
   return [view.element, hint.element];
+}
+
+/** Where nothing was baked there is nothing to choose. */
+function surfacesControl(state: States, status: Statuses): HTMLElement {
+  const choices = choicesFrom(SURFACES, SURFACES_LABELS).map((choice) => ({
+    ...choice,
+    hint: SURFACES_HINTS[choice.value],
+  }));
+  const surfaces = segments("Surfaces", choices, (value) => state.set({ surfaces: value }));
+  state.watch(({ surfaces: value }) => value, surfaces.show);
+  status.watch(
+    ({ choices: sides }) => sides.filter(({ kind }) => kind === "light").length,
+    (nLights) => {
+      surfaces.element.hidden = nLights < 2;
+    },
+  );
+  return surfaces.element;
 }
 
 function directLine(status: Statuses): HTMLElement {
