@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -17,11 +18,14 @@ pytestmark = pytest.mark.skipif(not _FULL.exists(), reason="this system has no d
 
 @pytest.mark.parametrize("options", [[], ["--json"]])
 def test_a_full_stdout_is_said(options):
+    # Python's own buffer is part of the matter: it is written once more at the end.
+    buffered = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
     with _FULL.open("w") as full:
         done = subprocess.run(
             [sys.executable, "-m", "irradia", "info", "builtin:plane-point", *options],
             stdout=full,
             stderr=subprocess.PIPE,
+            env=buffered,
             text=True,
             check=False,
         )

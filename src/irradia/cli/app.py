@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import importlib
+import os
 import sys
 import traceback
 from collections.abc import Sequence
@@ -94,6 +95,7 @@ def _run(arguments: Sequence[str], *, wants_json: bool) -> int:
     except MemoryError:
         return _fail(wants_json, "not enough memory; a smaller --resolution needs less", InputError.exit_code)
     except OSError as error:
+        _let_go_of_text()
         problem = disk_problem(error) or place_problem(error)
         if problem is None:
             return _our_fault(wants_json, error)
@@ -103,6 +105,16 @@ def _run(arguments: Sequence[str], *, wants_json: bool) -> int:
             return _fail(wants_json, _INTERRUPTED, INTERRUPTED)
         return _our_fault(wants_json, error)
     return code if isinstance(code, int) else 0
+
+
+def _let_go_of_text() -> None:
+    """Drops what stdout doesn't take: Python would try once more at its end, and exit with 120."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
 
 
 def _comes_from_ctrl_c(error: BaseException) -> bool:
