@@ -217,13 +217,16 @@ def test_ctrl_c_ends_it_well(viewer: Path, baked: Path) -> None:
     )
     command = [sys.executable, "-c", code, str(viewer), str(baked)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        said = _first_object(process)
-        connection = http.client.HTTPConnection("127.0.0.1", said["port"], timeout=20)
-        connection.request("GET", "/viewer.js")
-        with contextlib.closing(connection):
-            assert connection.getresponse().status == 200
-        process.send_signal(signal.SIGINT)
-        assert process.wait(20) == 0, process.stderr.read()
+        try:
+            said = _first_object(process)
+            connection = http.client.HTTPConnection("127.0.0.1", said["port"], timeout=20)
+            connection.request("GET", "/viewer.js")
+            with contextlib.closing(connection):
+                assert connection.getresponse().status == 200
+            process.send_signal(signal.SIGINT)
+            assert process.wait(20) == 0
+        finally:
+            process.kill()  # or leaving the block would wait for what doesn't end
     assert said["url"] == f"http://127.0.0.1:{said['port']}/"
     assert said["manifest"]["scenes"][0]["name"] == "box"
 
