@@ -27,7 +27,7 @@ await build({
   bundle: true,
   format: "esm",
   minify: true,
-  outdir: folder,
+  outdir: path.resolve(folder),
 });
 const found: Record<string, number[]> = { plain: [], lit: [] };
 for (let round = 0; round < Number(rounds); round++) {
